@@ -125,19 +125,6 @@ fn check(model: &Ddl, tracks: &[Vec<Position>]) -> Result<(), TestCaseError> {
 }
 
 #[test]
-fn unusual_observations_are_forecast_stably() {
-    let standing = vec![[3.0, -2.0]; OBSERVED];
-    let mut leaping = standing.clone();
-    leaping[OBSERVED - 1] = [103.0, -2.0];
-    let to_and_fro = |t: usize| [if t.is_multiple_of(2) { -2.0 } else { 2.0 }, 0.1 * t as f64];
-    let to_and_fro = (0..OBSERVED).map(to_and_fro).collect();
-    for model in &*MODELS {
-        check(model, &[standing.clone(), standing.clone(), leaping.clone()]).unwrap();
-        check(model, &[standing.clone(), Vec::clone(&to_and_fro)]).unwrap();
-    }
-}
-
-#[test]
 fn the_certified_forecast_is_the_forecast() {
     let windows = crowd::windows(3, 10);
     for variant in [Variant::Full, Variant::NoGoalShift] {

@@ -147,27 +147,6 @@ fn a_failure_of_one_scene_is_its_own() {
     assert_eq!(scenes.next_batch(100).windows.len(), 2);
 }
 
-#[test]
-fn each_scene_remembers_its_place() {
-    let model = drawn_model::of(Variant::Full);
-    let tracks = LiveTracks::with_frame_step(FRAME_STEP).unwrap();
-    let mut scenes = LiveScenes::new(tracks.clone());
-    for (scene, crowd) in [("hall", "corridor"), ("yard", "plaza")] {
-        let name = name(scene);
-        scenes.remember(Some(&name), &model, None).unwrap();
-        let live = LiveForecaster::with_tracks(&model, tracks.clone());
-        let mut live = live.remembering(None).unwrap();
-        let mut windows = Vec::new();
-        for (frame, people) in own_tracks::frames(&own_tracks::of_scene(crowd, 0..400)) {
-            scenes.observe(Some(&name), frame, people.clone()).unwrap();
-            windows.extend(live.push(frame, people).unwrap().map(|now| now.window));
-        }
-        assert_eq!(scenes.next_batch(usize::MAX).windows, windows);
-        let [one, other] = [scenes.place(Some(&name)), live.place()].map(|place| place.unwrap().memory());
-        assert_eq!(one, other);
-    }
-}
-
 const LINE: &str = "forecast - --model run --threads 1 --frame-step 10";
 
 /// Recordings of two scenes, whose frames alternate; the second scene begins two frames later.
@@ -233,26 +212,6 @@ fn interleaved_recordings_are_answered_as_each_alone() {
 }
 
 #[test]
-fn a_table_has_a_column_for_the_scene() {
-    let place = Place::with_model();
-    let text = HEADER.to_owned() + &interleaved(as_csv);
-    let finished = place.run_on(&text, &format!("{LINE} --one"));
-    let mixed = finished.succeeds();
-    assert!(mixed.starts_with("scene,observed_until,pedestrian,"));
-    let mut reader = csv::Reader::from_reader(mixed.as_bytes());
-    let records: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
-    for (scene, rows) in recordings() {
-        let alone = place.run_on(&own_tracks::csv(&rows), &format!("{LINE} --one"));
-        let alone = alone.succeeds();
-        let mut alone = csv::Reader::from_reader(alone.as_bytes());
-        let alone: Vec<Vec<String>> = alone.deserialize().map(Result::unwrap).collect();
-        let of_scene = records.iter().filter(|record| &record[0] == scene);
-        let of_scene = of_scene.map(|record| record.iter().skip(1).map(str::to_owned).collect());
-        assert_eq!(of_scene.collect::<Vec<Vec<String>>>(), alone);
-    }
-}
-
-#[test]
 fn a_wrong_line_of_one_scene_leaves_the_others_as_they_are() {
     let place = Place::with_model();
     let good = HEADER.to_owned() + &interleaved(as_csv);
@@ -288,18 +247,11 @@ fn what_does_not_fit_scenes_is_refused() {
         "forecast tracks.csv --model run --latest => --latest is for tracks as they come",
     ]);
     let tracks = own_tracks::csv(&own_tracks::three_pedestrians(9));
-    let scenes = place.text("scenes.csv");
-    for (input, options, words) in [
-        (
-            &tracks,
-            "--memory memories",
-            "memories is a folder, and the lines name no scenes",
-        ),
-        (&scenes, "--memory new.memory", "new.memory is a file of one place"),
-    ] {
-        let finished = place.run_on(input, &format!("{LINE} {options}"));
-        assert!(finished.fails().contains(words));
-    }
+    let finished = place.run_on(&tracks, &format!("{LINE} --memory memories"));
+    let words = "memories is a folder, and the lines name no scenes";
+    assert!(finished.fails().contains(words));
+    let finished = place.run_on(&place.text("scenes.csv"), &format!("{LINE} --memory new.memory"));
+    assert!(finished.fails().contains("new.memory is a file of one place"));
     assert!(!place.at("new.memory").exists());
 }
 
@@ -338,31 +290,6 @@ fn each_scene_has_a_memory_file_of_its_own() {
         }
         assert!(memory.last_frame().is_some());
     }
-}
-
-#[test]
-fn only_the_latest_frames_are_forecast_and_the_others_counted() {
-    let place = Place::with_model();
-    let text = HEADER.to_owned() + &interleaved(as_csv);
-    let answered = |text: &str| -> BTreeSet<(String, i64)> {
-        let lines = json_lines::<Value>(text).into_iter();
-        lines
-            .map(|line| (line["scene"].to_string(), line["observed_until"].as_i64().unwrap()))
-            .collect()
-    };
-    let line = format!("{LINE} --one --format jsonl");
-    let every_answer = answered(&place.run_on(&text, &line).succeeds());
-    let finished = place.run_on(&text, &format!("{line} --latest"));
-    let stderr = finished.stderr.clone();
-    let latest = answered(&finished.succeeds());
-    assert!(latest.is_subset(&every_answer));
-    for (scene, rows) in recordings() {
-        let last = rows[rows.len() - 1].0;
-        assert!(latest.contains(&(format!("{scene:?}"), last)), "{scene}: {latest:?}");
-    }
-    let dropped = every_answer.len() - latest.len();
-    let words = format!("and {dropped} dropped, because a later one came first");
-    assert_eq!(stderr.contains(&words), dropped > 0, "{stderr}");
 }
 
 #[test]

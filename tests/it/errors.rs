@@ -130,16 +130,15 @@ fn commands_that_need_libtorch_explain_how_to_get_it() {
     use ddl_tests::program::WITHOUT_LIBTORCH;
 
     let place = Place::with_model();
-    for (line, what) in [
-        ("train --convention simulated --fold plaza --out new", "training"),
-        (
-            "train --convention simulated --fold plaza --out new --device cuda",
-            "CUDA",
-        ),
-        ("forecast --model run tracks.csv --device cuda", "CUDA"),
-        ("evaluate --model run --device cuda", "CUDA"),
-        ("goals tracks.csv --device cuda", "CUDA"),
-    ] {
+    let cases = "
+training: train --convention simulated --fold plaza --out new
+CUDA: train --convention simulated --fold plaza --out new --device cuda
+CUDA: forecast --model run tracks.csv --device cuda
+CUDA: evaluate --model run --device cuda
+CUDA: goals tracks.csv --device cuda
+";
+    for case in cases.trim().lines() {
+        let (what, line) = case.split_once(": ").unwrap();
         let needs = format!("{what} {WITHOUT_LIBTORCH}");
         let build = "cargo build --release -p ddl-cli --features torch";
         place.fails(line, &[&needs, "`cargo xtask setup`", build]);

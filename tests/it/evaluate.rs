@@ -1,13 +1,13 @@
 //! `ddl evaluate`, `ddl goals --measure`, `ddl baselines`, `ddl report`: numbers from a model to the report page.
 
-use ddl::data::{Convention, Dataset, Window, WindowRule};
+use ddl::data::{Convention, WindowRule};
 use ddl::eval::ResultRow;
 use ddl::network::{StarConfig, TrainingConfig};
 use ddl::report::{ForecastSnapshot, Report};
 use ddl::{GoalEvaluation, Protocol, RunConfig, Variant};
 use ddl_tests::place::{Place, json};
 use ddl_tests::progress::{reported, returns_at_once};
-use ddl_tests::{crowd, drawn_model, recordings};
+use ddl_tests::{crowd, drawn_model};
 
 const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single --protocol online \
                         --protocol online-single --protocol joint --test-pedestrians 60 --threads 1 --commit 0123abc";
@@ -159,37 +159,6 @@ fn a_number_goes_from_the_model_to_the_page() {
         Protocol::Published.warning().unwrap(),
     ] {
         assert!(markdown.contains(text), "{text} is not on the page");
-    }
-}
-
-#[test]
-fn a_model_of_the_hotel_fold_is_measured() {
-    let Some(data) = recordings::star_folder() else {
-        return;
-    };
-    let dataset = Dataset::load(Convention::Star, &data).unwrap();
-    let fold = dataset.fold("hotel").unwrap();
-    let place = Place::empty();
-    let mut config = drawn_model::config(Variant::Full);
-    config.data.convention = Convention::Star;
-    config.data.fold = "hotel".to_owned();
-    let some: Vec<Window> = fold
-        .training_windows(WindowRule::Complete)
-        .into_iter()
-        .step_by(40)
-        .collect();
-    drawn_model::write(config, &some, &place.at("run"));
-    let summary = place.ok(&format!("{EVALUATE} --data {}", data.display()));
-    let report = Report::load(&place.at("run/report.json")).unwrap();
-    for protocol in Protocol::ALL {
-        assert!(summary.contains(protocol.name()), "{summary}");
-        let [published, complete] = [WindowRule::Published, WindowRule::Complete].map(|rule| {
-            let mut rows = of_protocol(report.rows(), protocol);
-            rows.retain(|row| row.conditions.window_rule == rule);
-            check_table(protocol, &rows, 60);
-            rows[0].scores.pedestrians
-        });
-        assert!(published <= complete && complete >= 60, "{published} of {complete}");
     }
 }
 

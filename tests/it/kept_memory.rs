@@ -121,25 +121,17 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
     place.write("folder/hall.memory", "");
     let before = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
     let input = own_tracks::csv(&rows(0..12));
-    for (options, words) in [
-        (
-            "--memory slow.memory",
-            "slow.memory: the memory was made at 2.5 frames per second",
-        ),
-        (
-            "--memory damaged.memory",
-            "damaged.memory is not a readable scene memory",
-        ),
-        ("--memory tracks.csv", "tracks.csv is not a readable scene memory"),
-        ("--memory folder", "folder is a folder, and the lines name no scenes"),
-        (
-            "--memory nowhere/hall.memory",
-            "nowhere/hall.memory: cannot write this file",
-        ),
-    ] {
-        let finished = place.run_on(&input, &format!("{LINE} {options}"));
-        let message = finished.fails();
-        assert!(message.contains(words), "{options}: {message}");
+    let cases = "
+slow.memory => slow.memory: the memory was made at 2.5 frames per second
+damaged.memory => damaged.memory is not a readable scene memory
+tracks.csv => tracks.csv is not a readable scene memory
+folder => folder is a folder, and the lines name no scenes
+nowhere/hall.memory => nowhere/hall.memory: cannot write this file
+";
+    for case in cases.trim().lines() {
+        let (file, words) = case.split_once(" => ").unwrap();
+        let message = place.run_on(&input, &format!("{LINE} --memory {file}")).fails();
+        assert!(message.contains(words), "{case}: {message}");
     }
     // The memory would overwrite the forecasts.
     let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));
@@ -206,36 +198,14 @@ fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
 }
 
 #[test]
-fn data_summarises_and_draws_a_memory() {
+fn data_draws_a_memory() {
     let place = Place::with_model();
-    let walked = rows(0..200);
-    remember(&place, "hall.memory", &walked, FRAME_STEP);
-    let summary = SceneMemory::read(&place.at("hall.memory")).unwrap().summary();
-    let facts = place.json("data hall.memory tracks.csv --json");
-    let memory = &facts["memories"][0];
-    assert_eq!(memory["stretches"], summary.segments);
-    assert_eq!(memory["tracks"], summary.tracks);
-    assert_eq!(memory["pedestrians"], summary.pedestrians);
-    assert_eq!(
-        (&memory["capacity"], &memory["frame_step"]),
-        (&20_000.into(), &FRAME_STEP.into())
-    );
-    assert_eq!(memory["low"], json!(summary.extent.unwrap()[0]));
-    assert_eq!(facts["recordings"].as_array().unwrap().len(), 1);
-    let summary_text = place.ok("data hall.memory --svg hall.svg");
-    let segments = format!("{} of at most 20000 segments", summary.segments);
-    for words in [
-        "hall.memory, the memory of a place",
-        &segments,
-        "10 frames a step",
-        "x from ",
-    ] {
-        assert!(summary_text.contains(words), "{words}: {summary_text}");
-    }
+    remember(&place, "hall.memory", &rows(0..200), FRAME_STEP);
+    let _ = place.ok("data hall.memory --svg hall.svg");
     let drawn = place.text("hall.svg");
     for part in [
         "<svg",
-        &segments,
+        " of at most 20000 segments",
         "class=\"walked w4\"",
         "class=\"come\"",
         "class=\"leave\"",

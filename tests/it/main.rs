@@ -13,13 +13,11 @@ mod faults;
 mod finished_benchmark;
 mod forecast;
 mod golden_forecasts;
-mod guarantee_on_real_people;
 #[cfg(unix)]
 mod guide;
 mod kept_memory;
 mod known_recordings;
 mod leak;
-mod leak_in_reports;
 mod live;
 mod live_memory;
 mod other_program;

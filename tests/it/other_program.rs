@@ -129,20 +129,15 @@ fn a_part_of_the_pedestrians_is_scored_only_on_request() {
 #[test]
 fn invalid_evaluations_are_refused_with_the_reason() {
     let Some(place) = simulated() else { return };
-    for (arguments, needle) in [
-        (
-            "forecasts.jsonl --protocol published",
-            "the forecaster chooses the goal",
-        ),
-        ("nowhere.jsonl", "cannot read nowhere.jsonl"),
-        ("forecasts.csv", "cannot read forecasts.csv"),
-        ("windows.jsonl", "windows.jsonl, line 1, hypotheses: is missing"),
-        (
-            "forecasts.jsonl --window-rule published",
-            "match no pedestrian of the windows",
-        ),
-    ] {
-        place.fails(&format!("{EVALUATE} {arguments}"), &[needle]);
+    let cases = "
+forecasts.jsonl --protocol published => the forecaster chooses the goal
+nowhere.jsonl => cannot read nowhere.jsonl
+forecasts.csv => cannot read forecasts.csv
+windows.jsonl => windows.jsonl, line 1, hypotheses: is missing
+forecasts.jsonl --window-rule published => match no pedestrian of the windows
+";
+    for case in cases.trim().lines() {
+        place.all_fail(&[&format!("{EVALUATE} {case}")]);
     }
     place.all_fail(&[
         "evaluate --convention simulated --fold doorway --forecasts forecasts.jsonl => \

@@ -5,25 +5,6 @@ use ddl_tests::place::{Place, json};
 use serde_json::Value;
 
 #[test]
-fn own_recordings_are_summarised() {
-    let place = Place::with_recordings();
-    let summary = place.json("data mine --json");
-    let recordings = summary["recordings"].as_array().unwrap();
-    assert_eq!(recordings.len(), 2);
-    assert_eq!(
-        (&recordings[0]["recording"], &recordings[0]["frame_step"]),
-        (&"lobby".into(), &10.into())
-    );
-    let windows = |recording: &Value| recording["to_learn_from"].as_u64().unwrap();
-    assert!(windows(&recordings[1]) > 100, "{summary}");
-    let total = windows(&summary["total"]);
-    assert_eq!(total, windows(&recordings[0]) + windows(&recordings[1]));
-    let words = place.ok("data mine");
-    let in_all = format!(" {total} pedestrian-windows in ");
-    assert!(words.lines().last().unwrap().contains(&in_all), "{words}");
-}
-
-#[test]
 fn models_are_measured_on_own_recordings() {
     let place = Place::with_recordings();
     let windows = place.ok("windows --data mine --fold yard");

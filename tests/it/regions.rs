@@ -1,10 +1,9 @@
-//! Adaptive regions: of the program on a real recording, and frame by frame.
+//! Adaptive regions of the program on a real recording.
 
-use ddl::data::{Convention, Dataset, LiveTracks, PedestrianId, Recording};
-use ddl::{AdaptiveRegions, DdlError, Forecaster as _, LiveForecaster, Variant};
+use ddl::data::{Convention, Dataset, PedestrianId, Recording};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json_lines};
-use ddl_tests::{bits, drawn_model, recordings};
+use ddl_tests::recordings;
 use serde::Deserialize;
 
 /// Number of frames of the recording that are forecast.
@@ -84,53 +83,4 @@ fn the_regions_reach_their_probability_without_future_data() {
             .zip(from_all)
             .all(|(fixed, adapted)| (radius(fixed) - radius(adapted)).abs() > 1e-9)
     );
-}
-
-#[test]
-fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
-    let model = drawn_model::of(Variant::Full);
-    let rows = own_tracks::three_pedestrians(30);
-    let step = own_tracks::FRAME_STEP;
-    let frames = own_tracks::frames(&rows);
-    let pedestrians = |frame: i64| frames[&frame].clone();
-    let live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(step).unwrap());
-    let mut plain = live.clone();
-    let mut adapting = live.with_adaptive_regions(AdaptiveRegions::default());
-    let mut certified = adapting.clone();
-    let mut expected = AdaptiveRegions::default();
-    for frame in (0..30).map(|frame| frame * step) {
-        if frame >= 8 * step {
-            let before = adapting.regions().unwrap().table().cloned();
-            let error = adapting.push(frame - step, pedestrians(frame)).unwrap_err();
-            assert!(matches!(error, DdlError::Live(_)), "{error}");
-            assert_eq!(adapting.regions().unwrap().table().cloned(), before);
-        }
-        let now = adapting.push(frame, pedestrians(frame)).unwrap();
-        let evidence = certified.push_certified(frame, pedestrians(frame)).unwrap();
-        let fixed = plain.push(frame, pedestrians(frame)).unwrap();
-        let (Some(now), Some(evidence), Some(fixed)) = (now, evidence, fixed) else {
-            assert!(frame < 7 * step);
-            continue;
-        };
-        for (i, k) in (0..3).flat_map(|i| (0..now.forecast.hypotheses()).map(move |k| (i, k))) {
-            assert_eq!(now.forecast.hypothesis(i, k), fixed.forecast.hypothesis(i, k));
-        }
-        // No forecast has ended yet.
-        if frame < 19 * step {
-            assert_eq!(bits::of(&now.forecast), bits::of(&fixed.forecast));
-        }
-        assert_eq!(evidence.forecast.forecast, now.forecast);
-        let forecast = model.forecast(&now.window).unwrap();
-        assert_eq!(now.forecast, expected.adapt(&now.window, forecast));
-        assert_eq!(
-            now.forecast == fixed.forecast,
-            frame == 7 * step,
-            "only the first forecast has unadapted regions"
-        );
-    }
-    // The adaptation is kept when the tracker restarts.
-    let learned = adapting.regions().unwrap().table().cloned();
-    adapting.clear();
-    assert_eq!(adapting.regions().unwrap().table().cloned(), learned);
-    assert!(adapting.push(0, pedestrians(0)).unwrap().is_none());
 }

@@ -1,10 +1,8 @@
 //! Imperfect tracks: begun late, with gaps, at other rates, in pixels, with words as pedestrians; and the messages
 //! about them.
 
-use ddl::TrackUnits;
 use ddl_tests::own_tracks::{self, Row, ndjson};
 use ddl_tests::place::{Place, json_lines};
-use ddl_tests::{crowd, drawn_model};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
@@ -212,83 +210,6 @@ fn files_and_options_override_the_rate_of_a_run() {
         assert_eq!(live.code, Some(0), "{live:?}");
         assert_eq!(live.stderr.contains("is taken as"), !note.is_empty(), "{live:?}");
         assert!(live.stderr.contains(note), "{live:?}");
-    }
-}
-
-#[test]
-fn rate_and_homography_of_a_run_are_used() {
-    let place = Place::with_model();
-    place.write_film();
-    let units = "--fps 23.98 --homography film/H.txt";
-    let finished = place.run(&format!("data film {units}"));
-    let text = finished.succeeds();
-    let total = text.lines().last().unwrap();
-    assert!(total.starts_with("total: 3 recordings, "), "{text}");
-    assert!(total.contains(" pedestrians, ") && total.ends_with(" hours"), "{text}");
-
-    let matrix = place.text("film/H.txt");
-    let mut config = drawn_model::config(ddl::Variant::Full);
-    config.units = Some(TrackUnits {
-        fps: Some(23.98),
-        homography: Some(matrix.parse().unwrap()),
-        ..TrackUnits::default()
-    });
-    drawn_model::write(config, &crowd::windows(60, 10), &place.at("film-run"));
-    let remembered = "note: the units are those of the run's training (--fps 23.98 and its homography); give --fps, \
-                      --dt, --frame-step or --homography if this is wrong\n";
-    let forecast = "forecast film/hall.csv --model film-run --last --threads 1";
-    let finished = place.run(forecast);
-    assert!(finished.stderr.contains(remembered), "{finished:?}");
-    let said = place.run(&format!("{forecast} {units}"));
-    assert!(!said.stderr.contains("training"), "{said:?}");
-    assert_eq!(finished.succeeds(), said.succeeds());
-    // A stream of the same rows gives the same forecasts as the file.
-    let options = "--model film-run --threads 1 --format jsonl";
-    let live = place.run_on(&place.text("film/hall.csv"), &format!("forecast - {options}"));
-    assert!(
-        live.stderr.contains("frames, as in the run's training (--fps 23.98"),
-        "{live:?}"
-    );
-    assert_eq!(live.succeeds(), place.ok(&format!("forecast film/hall.csv {options}")));
-}
-
-#[test]
-fn implausible_speeds_are_reported() {
-    let place = Place::empty();
-    for (factor, words) in [(60.0, "half of the steps are faster"), (0.1, "nine in ten steps")] {
-        let scaled = |(f, p, x, y)| (f, p, factor * x, factor * y);
-        let rows: Vec<Row> = own_tracks::three_pedestrians(60).into_iter().map(scaled).collect();
-        place.write_tracks("hall.csv", &rows);
-        for line in [
-            "evaluate --model hotel --convention own --data hall.csv --test-pedestrians 1 --protocol single --threads \
-             1",
-            "forecast hall.csv --last --one --threads 1",
-        ] {
-            let finished = place.run(line);
-            assert!(finished.stderr.contains(words), "{finished:#?}");
-        }
-    }
-    let rows: Vec<Row> = (0..9).map(|t| (t, 1, 30.0 * t as f64, 0.0)).collect();
-    place.write_tracks("pixels.csv", &rows);
-    let summary = &place.json("data pixels.csv --json")["recordings"][0];
-    assert_eq!(summary["file"], "pixels.csv");
-    let doubts = summary["doubts"].as_array().unwrap();
-    assert_eq!(doubts.len(), 2);
-    assert!(doubts[0].as_str().unwrap().contains("metres"), "{summary}");
-}
-
-#[test]
-fn frames_are_numbered_as_in_the_tracks() {
-    let place = Place::empty();
-    // 24 frames per second: a step of 0.4 s is 9.6 frames.
-    let far = |t| if t < 96 { 0.0 } else { 90.0 };
-    let walk = |id: i64, off: fn(i64) -> f64| (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64));
-    place.write_tracks("tracks.csv", &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>());
-    let summary = place.ok("data tracks.csv --fps 24");
-    assert!(summary.contains("frames 0 to 199 (9.6 per step of 0.4 s)"), "{summary}");
-    for (before, after) in [("(pedestrian 2, frame ", ')'), ("that ends at frame ", ',')] {
-        let frame = summary.split(before).nth(1).unwrap().split(after).next().unwrap();
-        assert!((95..=106).contains(&frame.parse::<i64>().unwrap()), "{summary}");
     }
 }
 

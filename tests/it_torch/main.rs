@@ -9,7 +9,6 @@ mod from_training;
 mod golden_forecasts;
 mod own_training;
 mod train_resume;
-mod training_memory;
 
 #[cfg(unix)]
 #[test]

@@ -169,17 +169,13 @@ fn a_training_starts_with_the_weights_of_another_model() {
         let _ = place.ok(&format!("{train} of-{model}"));
         place.fails(&format!("{train} run"), &["holds another run: its from.model"]);
     }
-    for (options, words) in [
-        (
-            "--feed-forward-width 16",
-            "star.feed_forward_width is 32, not 16 as requested",
-        ),
-        ("--variant no-goal-shift", "star.frame is goal, not world as requested"),
-        (
-            "--recipe published",
-            "star.feed_forward_width is 32, not 2048 as requested",
-        ),
-    ] {
+    let cases = "
+--feed-forward-width 16 => star.feed_forward_width is 32, not 16 as requested
+--variant no-goal-shift => star.frame is goal, not world as requested
+--recipe published => star.feed_forward_width is 32, not 2048 as requested
+";
+    for case in cases.trim().lines() {
+        let (options, words) = case.split_once(" => ").unwrap();
         let line = format!("train --data clips --from hotel {options} --out new {SMALL}");
         place.fails(&line, &["hotel (built in)", words]);
     }

@@ -16,6 +16,8 @@ mod valid_file;
 mod values;
 
 use arbitrary::Unstructured;
+use ddl_data::Format;
+use ddl_eval::external::ExternalFormat;
 use proptest::prelude::*;
 use proptest::sample::select;
 use proptest::test_runner::{TestRng, TestRunner};
@@ -37,18 +39,26 @@ pub struct Reader(&'static str, Seeds, fn(&[u8]));
 
 /// The readers that need no libtorch.
 pub const READERS: [Reader; 21] = [
-    Reader("table", Seeds::Corpus, tracks::table),
-    Reader("star_csv", Seeds::Corpus, tracks::star_csv),
-    Reader("social_gan", Seeds::Corpus, tracks::social_gan),
-    Reader("trajnet", Seeds::Corpus, tracks::trajnet),
-    Reader("obsmat", Seeds::Corpus, tracks::obsmat),
+    Reader("table", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Table)),
+    Reader("star_csv", Seeds::Corpus, |bytes| tracks::check(bytes, Format::StarCsv)),
+    Reader("social_gan", Seeds::Corpus, |bytes| {
+        tracks::check(bytes, Format::SocialGan);
+    }),
+    Reader("trajnet", Seeds::Corpus, |bytes| tracks::check(bytes, Format::TrajNet)),
+    Reader("obsmat", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Obsmat)),
     Reader("own_tracks", Seeds::Corpus, own_tracks::read),
     Reader("stream", Seeds::Corpus, stream::read),
     Reader("live_tracks", Seeds::Corpus, live_tracks::read),
     Reader("homography", Seeds::Corpus, values::homography),
-    Reader("foreign_json_lines", Seeds::Corpus, external::json_lines),
-    Reader("foreign_table", Seeds::Corpus, external::table),
-    Reader("foreign_trajnet", Seeds::Corpus, external::trajnet),
+    Reader("foreign_json_lines", Seeds::Corpus, |bytes| {
+        external::check(bytes, ExternalFormat::JsonLines);
+    }),
+    Reader("foreign_table", Seeds::Corpus, |bytes| {
+        external::check(bytes, ExternalFormat::Table);
+    }),
+    Reader("foreign_trajnet", Seeds::Corpus, |bytes| {
+        external::check(bytes, ExternalFormat::TrajNet);
+    }),
     Reader("report", Seeds::Corpus, values::report),
     Reader("moments", Seeds::Corpus, values::moments),
     Reader("goal_library", Seeds::Corpus, values::goal_library),

@@ -55,27 +55,3 @@ pub(crate) fn find_on_path(name: &OsStr) -> Option<PathBuf> {
         .map(|folder| folder.join(name))
         .find(|program| program.is_file())
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn output_and_errors_of_a_program_are_passed_on() {
-        let shell = |script: &str| {
-            let mut shell = Command::new("sh");
-            shell.args(["-c", script]);
-            shell
-        };
-        assert_eq!(read(&mut shell("echo hello")).unwrap(), "hello\n");
-        let error = read(&mut shell("echo first >&2; echo 'no network' >&2; exit 1")).unwrap_err();
-        assert_eq!(error.to_string(), "no network");
-        let error = run(&mut shell("exit 3")).unwrap_err().to_string();
-        assert!(
-            error.contains("`sh -c exit 3` failed") && error.contains('3'),
-            "{error}"
-        );
-        let error = run(&mut Command::new("./no such program")).unwrap_err().to_string();
-        assert!(error.contains("cannot be started"), "{error}");
-    }
-}

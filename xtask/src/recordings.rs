@@ -181,4 +181,4 @@ pub(crate) fn bring_in_for(workspace: &Workspace, asked: Option<&str>, data: Opt
 }
 
 #[cfg(test)]
-pub(crate) mod tests;
+mod tests;

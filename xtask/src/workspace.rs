@@ -114,16 +114,3 @@ fn variables_to_remove() -> Vec<OsString> {
 pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
     std::path::absolute(path).with_context(|| format!("{} cannot be made an absolute path", path.display()))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_child_never_sees_libtorch_or_flags() {
-        let removed = variables_to_remove();
-        for name in HARMFUL.split(' ').chain(["LIBTORCH"]) {
-            assert!(removed.contains(&OsString::from(name)), "{name}");
-        }
-    }
-}

@@ -168,29 +168,4 @@ mod tests {
             }
         }
     }
-
-    /// Two other recordings of a place confirm its memory.
-    #[test]
-    fn memories_are_confirmed_by_training_recordings_of_the_place() {
-        for convention in Convention::ALL {
-            let plan = convention.plan();
-            let place = |name: &String| {
-                let mut recordings = plan.recordings.iter();
-                let recording = recordings.find(|recording| recording.name == *name);
-                recording.and_then(|recording| recording.place.as_deref())
-            };
-            for fold in plan.folds.iter().filter(|fold| !fold.place_memory.is_empty()) {
-                let [first, second] = &fold.place_memory[..] else {
-                    panic!("{convention}, {}: not a pair", fold.name)
-                };
-                assert!(first != second && place(first).is_some());
-                for recording in &fold.test {
-                    assert_eq!([place(first), place(second)], [place(recording); 2]);
-                    assert!(!fold.place_memory.contains(recording));
-                }
-            }
-        }
-        let folds: Vec<&str> = Convention::Star.folds_with_place_memory().collect();
-        assert_eq!(folds, ["zara1", "zara2"]);
-    }
 }

@@ -98,22 +98,6 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_file_is_named() {
-        let root = tempfile::tempdir().unwrap();
-        fill(root.path(), Convention::Star);
-        std::fs::remove_file(root.path().join("zara02.csv")).unwrap();
-        let error = locate(Convention::Star, Some(root.path())).unwrap_err().to_string();
-        assert!(
-            error.contains("(no zara02.csv)") && error.contains(DATASETS_VARIABLE),
-            "{error}"
-        );
-        assert!(matches!(
-            locate(Convention::Simulated, None),
-            Err(DataError::NoFiles("simulated"))
-        ));
-    }
-
-    #[test]
     fn relative_folders_are_looked_for_up_to_the_root_of_the_workspace() {
         let outer = tempfile::tempdir().unwrap();
         let workspace = outer.path().join("workspace");

@@ -23,8 +23,8 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::recording::Recording;
-use crate::simulate::engine::{FRAME_STEP, Trace};
-use crate::simulate::layout::{SCENES, SceneLayout};
+use crate::simulate::engine::FRAME_STEP;
+use crate::simulate::layout::SCENES;
 
 /// Recorded steps of a scene: three minutes.
 const STEPS: i64 = 450;
@@ -32,17 +32,13 @@ const STEPS: i64 = 450;
 /// Three minutes of each scene. The same seed gives the same bytes.
 pub(crate) fn recordings(seed: u64) -> Vec<Recording> {
     let scenes = (0..).zip(SCENES);
-    let recordings = scenes.map(|(stream, scene)| {
-        let observations = trace(&(scene.layout)(), stream, seed).observations;
+    let recordings = scenes.map(|(stream, (name, layout))| {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        rng.set_stream(stream);
+        let observations = engine::run(&layout(), STEPS, &mut rng);
         // Cannot fail: pedestrians have unique ids and are seen once a frame, capped speeds keep positions finite, and
         // there are many arrivals in three minutes.
-        Recording::new(scene.name, FRAME_STEP, observations).expect("a simulation yields unique, finite observations")
+        Recording::new(name, FRAME_STEP, observations).expect("a simulation yields unique, finite observations")
     });
     recordings.collect()
-}
-
-fn trace(layout: &SceneLayout, stream: u64, seed: u64) -> Trace {
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    rng.set_stream(stream);
-    engine::run(layout, STEPS, &mut rng)
 }

@@ -1,19 +1,13 @@
-//! Speed of the value, the gradient and the search (pairs per second on one thread, for each instruction set). The
-//! windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of the
-//! benchmarks say which.
+//! Speed of the value, the gradient and the search (pairs per second).
 
-mod recordings;
+#[path = "../tests/walks/mod.rs"]
+mod walks;
 
 use std::hint::black_box;
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use ddl_softdtw::{Cost, InstructionSet, SearchIndex, SoftDtw};
-use recordings::Windows;
-use recordings::walks::Numbers;
-
-fn dtw() -> SoftDtw {
-    SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma")
-}
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use ddl_softdtw::SearchIndex;
+use walks::{Numbers, squared};
 
 fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
     let component = |i: usize, d: usize| (phase + 0.1 * i as f64 + d as f64).sin();
@@ -21,7 +15,7 @@ fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
 }
 
 fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]]) {
-    let dtw = dtw();
+    let dtw = squared(1.0);
     let name = format!("pair {}x{}x{D}", x.len(), y.len());
     let mut group = criterion.benchmark_group(name);
     group.bench_function("value", |b| {
@@ -41,25 +35,21 @@ fn pairs(criterion: &mut Criterion) {
 }
 
 fn search(criterion: &mut Criterion) {
-    let windows = Windows::load(8);
-    let queries = windows.some_queries(24);
-    let sequences = &windows.candidates[..4096];
-    let name = format!("search 8x8x2, {} windows", windows.source);
-    let mut group = criterion.benchmark_group(name);
+    let mut numbers = Numbers(2);
+    let mut pedestrians = |count| (0..count).map(|_| numbers.pedestrian::<2>(8)).collect::<Vec<_>>();
+    let (sequences, queries) = (pedestrians(4096), pedestrians(24));
+    let mut group = criterion.benchmark_group("search 8x8x2");
     group.sample_size(20);
     let pairs = (sequences.len() * queries.len()) as u64;
     group.throughput(Throughput::Elements(pairs));
-    for set in InstructionSet::available() {
-        let index = SearchIndex::build(&dtw(), sequences).expect("valid");
-        let index = index.with_instruction_set(set).expect("available");
-        group.bench_function(BenchmarkId::new("100 nearest", set), |b| {
-            b.iter(|| {
-                for x in &queries {
-                    black_box(index.nearest(x, 100)).expect("valid");
-                }
-            });
+    let index = SearchIndex::build(&squared(1.0), &sequences).expect("valid");
+    group.bench_function("100 nearest", |b| {
+        b.iter(|| {
+            for x in &queries {
+                black_box(index.nearest(x, 100)).expect("valid");
+            }
         });
-    }
+    });
     group.finish();
 }
 

@@ -4,8 +4,6 @@ use std::fmt;
 
 use thiserror::Error;
 
-use ddl_simd::InstructionSet;
-
 /// The sequence of a comparison that an error refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SequenceRole {
@@ -53,8 +51,6 @@ pub enum SearchError {
     NoCandidates,
     #[error("candidate {index}: {source}")]
     Candidate { index: usize, source: SoftDtwError },
-    #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
-    InstructionSet { set: InstructionSet },
     #[error("query: {0}")]
     Query(#[from] SoftDtwError),
     #[error("query {index} of the batch: {source}")]

@@ -19,12 +19,8 @@
 //! exp(−cost/γ) is a power of two. A query runs the recursion on all lanes at once in the exponential domain, where the
 //! smoothed minimum is one addition. It keeps every candidate whose score may belong to the n best. The `f32` scores
 //! only preselect candidates (the sieve): a bound of their error is computed from the lengths, the dimension and the
-//! size of the data. Every candidate within that bound of the n-th score is evaluated again in `f64`, eight pairs at
-//! once. The `f64` values decide the set, its order and the returned distances. Ties are broken by the index of the
-//! candidate.
-//!
-//! The `f64` values are also computed in the exponential domain, to 3e-14 γ. A pair beyond its range (a value above
-//! 570 γ, or more than 180 steps) is evaluated alone. Operations are rounded in the same order everywhere.
+//! size of the data. Every candidate within that bound of the n-th score is evaluated again in `f64`, as a single value.
+//! The `f64` values decide the set, its order and the returned distances. Ties are broken by the index of the candidate.
 //! So the results, including the distances, have the same bits for every instruction set, every number of threads and
 //! every batch of queries. A candidate that equals the query is at distance 0.
 //!
@@ -33,13 +29,11 @@
 //! neighbour is farther than about 57 γ. For γ = 0 all values are computed in the log domain.
 //!
 //! The kernels are written once and compiled for three instruction sets (`ddl-simd`): AVX-512, AVX2 with fused
-//! multiplication, and the baseline of the target. The instruction set is chosen when an index is built;
-//! `SearchIndex::with_instruction_set` chooses another, for tests and measurements.
+//! multiplication, and the baseline of the target. The fastest of the machine is taken.
 //!
 //! ## Accuracy and cost
 //!
-//! The distances of the 100 nearest are within 6e-15 m²/s² of the log-domain values (28 queries of 7 and 8 steps,
-//! `tests/recordings.rs`). Counted with callgrind, a pair of 7 / 8 steps takes 347 / 478 instructions with AVX2 and
+//! Counted with callgrind, a pair of 7 / 8 steps takes 347 / 478 instructions with AVX2 and
 //! 1050 / 1330 with portable code; the compiled loop of AVX-512 has about 56 / 68.
 
 mod backward;
@@ -55,7 +49,6 @@ mod laws;
 mod log_domain;
 mod range;
 mod recursion;
-mod refine;
 mod search;
 mod select;
 mod sieve;
@@ -64,7 +57,6 @@ mod value;
 mod weight;
 
 pub use cost::Cost;
-pub use ddl_simd::InstructionSet;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
 pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;

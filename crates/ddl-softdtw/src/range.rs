@@ -1,64 +1,38 @@
-//! Accuracy of the recursion in the exponential domain: its range and its rounding error, in `f32` and `f64`.
+//! Accuracy of the recursion in the exponential domain in `f32`: its range and its rounding error.
 //!
 //! All quantities are in log2 units: a score Z represents the soft-DTW value −γ ln 2 · log2(Z / start).
 
 use ddl_simd::InstructionSet;
 
-use crate::exp2::EXP2_ERROR;
-
-/// Magnitude of the smallest exponent of a similarity in `f32`; smaller exponents are clamped, so that no power of two
+/// Magnitude of the smallest exponent of a similarity; smaller exponents are clamped, so that no power of two
 /// is denormal.
 pub(crate) const COST_LIMIT: f32 = 124.0;
-/// The same in `f64`.
-pub(crate) const COST_LIMIT_64: f64 = 900.0;
-/// Added to every product of a similarity and predecessors in `f32`: 2^−100. A fused product that is added to it is not
+/// Added to every product of a similarity and predecessors: 2^−100. A fused product that is added to it is not
 /// first rounded to a denormal number.
 pub(crate) const FUSED_FLOOR: f32 = f32::from_bits((127 - 100) << 23);
-/// Added to every sum of predecessors in `f32` by [`InstructionSet::Portable`], where products may be rounded on their
+/// Added to every sum of predecessors by [`InstructionSet::Portable`], where products may be rounded on their
 /// own. Its product with 2^−[`COST_LIMIT`] is a normal number.
 pub(crate) const UNFUSED_FLOOR: f32 = 0.25;
-/// Added to every sum of predecessors in `f64`: 2^−120. Its product with 2^−900 is a normal number.
-pub(crate) const FLOOR_64: f64 = f64::from_bits((1023 - 120) << 52);
 
-/// Bound on the relative error of a power of two in `f32` ([`ddl_simd::exp2_each`]).
-const EXP2_ERROR_32: f64 = 3e-7;
+/// Bound on the relative error of a power of two ([`ddl_simd::exp2_each`]).
+const EXP2_ERROR: f64 = 3e-7;
 
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
 /// Largest margin (log2 units). With a larger one, the sieve would keep nearly every candidate.
 const WIDEST_MARGIN: f64 = 0.25;
 
-#[derive(Clone, Copy, Debug)]
-struct FloatFormat {
-    longest: usize,
-    cost_limit: f64,
-    /// The number that is added to a sum of predecessors, or to its product.
-    floor: f64,
-    /// log2 of the largest number, minus two for rounding and for the sums of three terms.
-    top: f64,
-    /// log2 of the factor by which an accurate score must exceed the error of clamp and floor.
-    headroom: f64,
-}
-
-const F32: FloatFormat = FloatFormat {
-    longest: 32,
-    cost_limit: COST_LIMIT as f64,
-    floor: UNFUSED_FLOOR as f64,
-    top: 125.0,
-    headroom: 24.0,
-};
-
-const F64: FloatFormat = FloatFormat {
-    longest: 180,
-    cost_limit: COST_LIMIT_64,
-    floor: FLOOR_64,
-    top: 1020.0,
-    headroom: 56.0,
-};
+/// Most steps of a sequence.
+const LONGEST: usize = 32;
+/// log2 of the largest number, minus two for rounding and for the sums of three terms.
+const TOP: f64 = 125.0;
+/// log2 of the factor by which an accurate score must exceed the error of clamp and floor.
+const HEADROOM: f64 = 24.0;
 
 /// The range of the recursion for a query of n steps against candidates of up to m steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Range {
-    format: FloatFormat,
+    /// The number that is added to a sum of predecessors, or to its product.
+    floor: f64,
     /// log2 of the number of warping paths (a Delannoy number), which bounds Z / start.
     paths_log2: f64,
     /// log2 of the number of paths from a cell to the last one, summed over all cells.
@@ -69,46 +43,37 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The range in `f32` for lengths `n` and `m` on `set`, or `None` when the sequences are too long for it.
-    pub(crate) fn of_f32(set: InstructionSet, n: usize, m: usize) -> Option<Self> {
+    /// The range for lengths `n` and `m` on `set`, or `None` when the sequences are too long for it.
+    pub(crate) fn new(set: InstructionSet, n: usize, m: usize) -> Option<Self> {
+        if n.max(m) > LONGEST {
+            return None;
+        }
         let floor = match set {
             InstructionSet::Portable => UNFUSED_FLOOR,
             _ => FUSED_FLOOR,
         };
-        let floor = f64::from(floor);
-        Self::of(FloatFormat { floor, ..F32 }, n, m)
-    }
-
-    pub(crate) fn of_f64(n: usize, m: usize) -> Option<Self> {
-        Self::of(F64, n, m)
-    }
-
-    fn of(format: FloatFormat, n: usize, m: usize) -> Option<Self> {
-        if n.max(m) > format.longest {
-            return None;
-        }
         let (paths, tails) = delannoy(n, m);
         let paths_log2 = paths.log2();
         Some(Self {
-            format,
+            floor: f64::from(floor),
             paths_log2,
             tails_log2: tails.log2(),
-            start_log2: (format.top - paths_log2.ceil()) as i16,
+            start_log2: (TOP - paths_log2.ceil()) as i16,
             longest_path: (n + m - 1) as f64,
         })
     }
 
     /// The smallest score (log2, start included) that is accurate despite the clamp on costs and the floor on sums.
-    /// Each of the at most `paths` paths gains at most 2^−`cost_limit` by the clamp, and each cell passes on at most
+    /// Each of the at most `paths` paths gains at most 2^−[`COST_LIMIT`] by the clamp, and each cell passes on at most
     /// `floor` times the number of paths from it to the last cell.
     pub(crate) fn smallest_accurate_log2(&self) -> f64 {
         let start = f64::from(self.start_log2);
-        let clamp = start + self.paths_log2 - self.format.cost_limit;
-        let floor = self.format.floor.log2() + self.tails_log2;
-        clamp.max(floor) + 1.0 + self.format.headroom
+        let clamp = start + self.paths_log2 - f64::from(COST_LIMIT);
+        let floor = self.floor.log2() + self.tails_log2;
+        clamp.max(floor) + 1.0 + HEADROOM
     }
 
-    /// Bound on the error of log2(score) in `f32` for scores of at least `score_log2` (start included), for inputs of
+    /// Bound on the error of log2(score) for scores of at least `score_log2` (start included), for inputs of
     /// absolute value up to `largest` and dimension `dimension`. Paths whose cost C exceeds
     /// `paths + (start − score) + 30` contribute less than 2^−30 of the score. For the others, let e = largest · u be
     /// the input error. By the Cauchy-Schwarz inequality, the squared differences of a path of P cells have an error of
@@ -121,8 +86,8 @@ impl Range {
         let spread = path * dimension;
         let costs =
             4.0 * input * (spread * cost).sqrt() + 4.0 * input * input * spread + (dimension + 3.0) * UNIT * cost;
-        let cells = path * (EXP2_ERROR_32 + 4.0 * UNIT) * std::f64::consts::LOG2_E;
-        let tails = 2.0_f64.powf(-self.format.headroom) * 3.0;
+        let cells = path * (EXP2_ERROR + 4.0 * UNIT) * std::f64::consts::LOG2_E;
+        let tails = 2.0_f64.powf(-HEADROOM) * 3.0;
         costs + cells + tails
     }
 
@@ -133,7 +98,9 @@ impl Range {
     pub(crate) fn margin_log2(&self, score_log2: f64, largest: f64, dim: usize) -> Option<f64> {
         // A candidate just inside the band has a slightly lower score than the n-th; one unit covers the difference.
         let score_log2 = score_log2 - 1.0;
-        let refined = error_log2_64(self.longest_path, self.cost_log2(score_log2), dim);
+        // The bound of `SoftDtw`, in log2 units.
+        let size = self.cost_log2(score_log2) + (self.longest_path + 1.0) * std::f64::consts::LOG2_E;
+        let refined = (dim as f64 + 12.0) * f64::EPSILON / 2.0 * size;
         let margin = 2.0 * (self.error_log2(score_log2, largest, dim) + refined);
         (margin <= WIDEST_MARGIN).then_some(margin)
     }
@@ -142,16 +109,6 @@ impl Range {
     fn cost_log2(&self, score_log2: f64) -> f64 {
         self.paths_log2 + (f64::from(self.start_log2) - score_log2).max(0.0) + 30.0
     }
-}
-
-/// Bound on the error of a value in log2 units, for warping paths of up to `path` cells. Paths of at most `cost` must
-/// contribute all but 2^−30 of the sum. Each squared difference is rounded twice; their sum, its root and its scaling
-/// are rounded D + 1 times; and the scale was rounded twice. Each cell adds the error of exp2 and four roundings, and
-/// the logarithm one rounding.
-pub(crate) fn error_log2_64(path: f64, cost: f64, dimension: usize) -> f64 {
-    const UNIT: f64 = f64::EPSILON / 2.0;
-    let costs = (dimension as f64 + 6.0) * UNIT * cost;
-    costs + (path * (EXP2_ERROR + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
 }
 
 /// Number of warping paths through an n × m grid, and the sum of that number over all sub-grids that share its end.
@@ -176,7 +133,7 @@ mod tests {
 
     use ddl_simd::InstructionSet;
 
-    use super::{F32, F64, Range, delannoy};
+    use super::{LONGEST, Range, delannoy};
 
     #[test]
     fn paths_are_the_central_delannoy_numbers() {
@@ -188,17 +145,12 @@ mod tests {
     }
 
     #[test]
-    fn pedestrians_have_room_for_values_of_57_gamma_or_47_if_portable_and_in_f64_of_570() {
-        let reach = |range: Range| {
-            let log2 = f64::from(range.start_log2) - range.smallest_accurate_log2();
-            log2 * std::f64::consts::LN_2
-        };
+    fn pedestrians_have_room_for_values_of_57_gamma_or_47_if_portable() {
         for (set, gammas) in [(InstructionSet::Avx2, 57.0), (InstructionSet::Portable, 47.0)] {
-            assert!(reach(Range::of_f32(set, 8, 8).expect("short")) > gammas);
-            assert!(Range::of_f32(set, F32.longest + 1, 8).is_none());
+            let range = Range::new(set, 8, 8).expect("short");
+            let log2 = f64::from(range.start_log2) - range.smallest_accurate_log2();
+            assert!(log2 * std::f64::consts::LN_2 > gammas);
+            assert!(Range::new(set, LONGEST + 1, 8).is_none());
         }
-        assert!(reach(Range::of_f64(8, 8).expect("short")) > 570.0);
-        assert!(reach(Range::of_f64(F64.longest, F64.longest).expect("short")) > 100.0);
-        assert!(Range::of_f64(F64.longest + 1, 8).is_none());
     }
 }

@@ -1,18 +1,15 @@
 //! Exact search for the nearest candidates in the normalised soft-DTW distance.
 
-use ddl_simd::{Dispatch, InstructionSet};
+use ddl_simd::Dispatch;
 use rayon::prelude::*;
 
 use crate::cost::Cost;
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
-use crate::refine::{PairValue, PairValues};
 use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite, normalise};
 
 /// Number of queries that are compared with the candidates together.
 const TOGETHER: usize = 8;
-/// Number of candidates whose D(y, y) one task computes.
-const SELF_VALUES_TOGETHER: usize = 1024;
 
 /// A candidate found by a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +31,6 @@ pub struct SearchIndex<const D: usize> {
     offsets: Vec<usize>,
     self_values: Vec<f64>,
     sieve: Option<CandidateSieve<D>>,
-    dispatch: Dispatch,
 }
 
 impl<const D: usize> SearchIndex<D> {
@@ -72,7 +68,6 @@ impl<const D: usize> SearchIndex<D> {
             offsets,
             self_values: Vec::new(),
             sieve: None,
-            dispatch: Dispatch::detect(),
         };
         index.self_values = index.evaluate_self_values()?;
         if dtw.gamma > 0.0 && dtw.cost == Cost::SquaredEuclidean {
@@ -80,15 +75,6 @@ impl<const D: usize> SearchIndex<D> {
             index.sieve = CandidateSieve::build(dtw.gamma, &candidates, &index.self_values);
         }
         Ok(index)
-    }
-
-    /// Sets another instruction set than the fastest of the machine. The results have the same bits.
-    ///
-    /// # Errors
-    /// [`SearchError::InstructionSet`] if the machine lacks the instruction set.
-    pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, SearchError> {
-        let dispatch = Dispatch::new(set).ok_or(SearchError::InstructionSet { set })?;
-        Ok(Self { dispatch, ..self })
     }
 
     /// Number of candidates.
@@ -143,7 +129,7 @@ impl<const D: usize> SearchIndex<D> {
         let valid = queries.iter().zip(&checked);
         let valid: Vec<_> = valid.filter(|(_, c)| c.is_ok()).map(|(q, _)| *q).collect();
         let mut survivors = sieve
-            .map(|sieve| sieve.survivors(self.dispatch, &valid, wanted))
+            .map(|sieve| sieve.survivors(Dispatch::detect(), &valid, wanted))
             .unwrap_or_default()
             .into_iter();
         let answer = |(query, checked): (&&[[f64; D]], Result<(), SoftDtwError>)| {
@@ -160,50 +146,28 @@ impl<const D: usize> SearchIndex<D> {
         if wanted == 0 {
             return Ok(Vec::new());
         }
-        let values = PairValues::new(self.dtw, self.dispatch);
-        let self_query = values.all(&[(query, query)])[0];
-        let neighbour = |index: usize, value: f64| Neighbour {
-            index,
-            distance: normalise(value, self_query, self.self_values[index]),
+        let self_query = self.dtw.self_value(query);
+        let neighbour = |&index: &usize| {
+            let value = self.dtw.value_unchecked(query, self.candidate(index));
+            let distance = normalise(value, self_query, self.self_values[index]);
+            Neighbour { index, distance }
         };
-        let pairs: Vec<_> = indices.iter().map(|&index| (query, self.candidate(index))).collect();
-        let (mut neighbours, mut bounds) = (Vec::with_capacity(indices.len()), Vec::new());
-        for (&index, value) in indices.iter().zip(values.of(&pairs)) {
-            match value {
-                PairValue::Known(value) => neighbours.push(neighbour(index, value)),
-                PairValue::AtLeast(bound) => bounds.push(neighbour(index, bound)),
-            }
-        }
+        let mut neighbours: Vec<_> = indices.iter().map(neighbour).collect();
         keep_nearest(&mut neighbours, wanted);
-        if let Some(last) = neighbours.get(wanted - 1) {
-            bounds.retain(|bound| bound.distance <= last.distance);
-        }
-        if !bounds.is_empty() {
-            let value = |index| self.dtw.value_unchecked(query, self.candidate(index));
-            neighbours.extend(bounds.iter().map(|bound| neighbour(bound.index, value(bound.index))));
-            keep_nearest(&mut neighbours, wanted);
-        }
         for neighbour in &neighbours {
             finite(neighbour.distance)?;
         }
         Ok(neighbours)
     }
 
-    /// D(y, y) of all candidates, computed like D(x, y), so that a candidate that equals the query has distance 0.
+    /// D(y, y) of all candidates.
     fn evaluate_self_values(&self) -> Result<Vec<f64>, SearchError> {
-        let values = PairValues::new(self.dtw, self.dispatch);
-        let indices: Vec<usize> = (0..self.len()).collect();
-        let chunks = indices.par_chunks(SELF_VALUES_TOGETHER).flat_map(|indices| {
-            let pairs = indices
-                .iter()
-                .map(|&index| (self.candidate(index), self.candidate(index)));
-            values.all(&pairs.collect::<Vec<_>>())
-        });
-        let self_values: Vec<f64> = chunks.collect();
-        for (index, &value) in self_values.iter().enumerate() {
-            finite(value).map_err(|source| SearchError::Candidate { index, source })?;
-        }
-        Ok(self_values)
+        let value = |index| finite(self.dtw.self_value(self.candidate(index)));
+        let values: Vec<_> = (0..self.len()).into_par_iter().map(value).collect();
+        let values = values.into_iter().enumerate();
+        values
+            .map(|(index, value)| value.map_err(|source| SearchError::Candidate { index, source }))
+            .collect()
     }
 
     fn candidate(&self, index: usize) -> &[[f64; D]] {

@@ -36,7 +36,7 @@ impl<const D: usize> CandidateSieve<D> {
     /// The sieve of candidates of known D(y, y), or `None` if `f32` cannot hold them for any query.
     pub(crate) fn build(gamma: f64, candidates: &[&[[f64; D]]], self_values: &[f64]) -> Option<Self> {
         let blocks = Blocks::new(gamma, candidates);
-        let range = Range::of_f32(InstructionSet::Portable, 1, blocks.longest)?;
+        let range = Range::new(InstructionSet::Portable, 1, blocks.longest)?;
         range.margin_log2(f64::from(range.start_log2), blocks.largest, D)?;
         let half_to_log2 = blocks.narrowing.scale * blocks.narrowing.scale / 2.0;
         let weight = |&member: &usize| match self_values.get(member) {
@@ -93,7 +93,7 @@ impl<const D: usize> CandidateSieve<D> {
 
     /// The state of a query before its first block, or `None` if its scores would not be accurate.
     fn search(&self, set: InstructionSet, query: &[[f64; D]], wanted: usize) -> Option<Search<D>> {
-        let range = Range::of_f32(set, query.len(), self.blocks.longest)?;
+        let range = Range::new(set, query.len(), self.blocks.longest)?;
         let narrowing = &self.blocks.narrowing;
         let largest = self.blocks.largest.max(narrowing.largest(query.iter()));
         let widest = range.margin_log2(range.smallest_accurate_log2(), largest, D)?;

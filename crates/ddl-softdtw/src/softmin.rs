@@ -39,33 +39,3 @@ fn sorted(a: f64, b: f64, c: f64) -> (f64, f64, f64) {
     let (a, b) = if b < a { (b, a) } else { (a, b) };
     (a, b, c)
 }
-
-#[cfg(test)]
-mod tests {
-    #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
-
-    use super::{softmin, softmin_weights};
-
-    #[test]
-    fn huge_values_and_tiny_gamma_stay_finite() {
-        assert_eq!(softmin(1e6, 2e6, 3e6, 1e-3), 1e6);
-        assert_eq!(softmin(1e6, f64::INFINITY, f64::INFINITY, 1e-3), 1e6);
-        assert_eq!(softmin(1.0, 2.0, 3.0, f64::MIN_POSITIVE / 4.0), 1.0);
-        assert_eq!(softmin(f64::INFINITY, f64::INFINITY, f64::INFINITY, 1.0), f64::INFINITY);
-    }
-
-    #[test]
-    fn weights_are_the_derivatives() {
-        let (values, gamma, h) = ([0.4, 0.9, 0.2], 0.3, 1e-6);
-        let (_, weights) = softmin_weights(values, gamma);
-        for i in 0..3 {
-            let mut up = values;
-            let mut down = values;
-            up[i] += h;
-            down[i] -= h;
-            let slope = (softmin(up[0], up[1], up[2], gamma) - softmin(down[0], down[1], down[2], gamma)) / (2.0 * h);
-            assert!((weights[i] - slope).abs() < 1e-9);
-        }
-        assert_eq!(softmin_weights([2.0, 1.0, 1.0], 0.0), (1.0, [0.0, 1.0, 0.0]));
-    }
-}

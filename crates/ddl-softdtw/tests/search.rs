@@ -2,7 +2,7 @@
 
 mod walks;
 
-use ddl_softdtw::{Cost, InstructionSet, Neighbour, SearchError, SearchIndex, SoftDtw};
+use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 use proptest::prelude::*;
 use walks::{Numbers, mapped, squared};
 
@@ -76,6 +76,9 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         let (candidates, queries) = (mapped(&candidates, scale, by), mapped(&queries, scale, by));
         compare((1.0, Cost::SquaredEuclidean), &candidates, &queries, 20);
     }
+    // Standing pedestrians, of whom hundreds are nearly equal.
+    let standing: Vec<Walk> = (0..1000).map(|_| numbers.standing(8)).collect();
+    compare((1.0, Cost::SquaredEuclidean), &standing, &standing[..4], 100);
     // So long that the number of paths exceeds the range of f32.
     let long: Vec<Walk> = (0..60).map(|i| numbers.pedestrian(30 + i % 5)).collect();
     compare((1.0, Cost::SquaredEuclidean), &long, &[numbers.pedestrian(31)], 10);
@@ -86,7 +89,7 @@ fn bits(neighbours: &[Neighbour]) -> Vec<(usize, u64)> {
 }
 
 #[test]
-fn instruction_sets_threads_and_company_change_nothing() {
+fn threads_and_company_change_nothing() {
     let mut numbers = Numbers(8);
     let mut candidates: Vec<Walk> = (0..900).map(|i| numbers.pedestrian(1 + i % 12)).collect();
     candidates.extend((0..900).map(|i| numbers.standing(7 + i % 2)));
@@ -104,26 +107,11 @@ fn instruction_sets_threads_and_company_change_nothing() {
         let dtw = SoftDtw::new(gamma, cost).unwrap();
         let index = SearchIndex::build(&dtw, &candidates).unwrap();
         let expected: Vec<_> = queries.iter().map(|q| bits(&index.nearest(q, 70).unwrap())).collect();
-        for set in InstructionSet::available() {
-            let index = index.clone().with_instruction_set(set).unwrap();
-            for threads in [1, 3] {
-                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-                let neighbours = pool.unwrap().install(|| index.nearest_batch(&queries, 70)).unwrap();
-                let neighbours: Vec<_> = neighbours.iter().map(|of_query| bits(of_query)).collect();
-                assert_eq!(neighbours, expected, "{set}, {threads} threads, gamma {gamma}");
-            }
-        }
-    }
-}
-
-#[test]
-fn an_instruction_set_the_machine_lacks_is_refused() {
-    let index = SearchIndex::build(&squared(1.0), &[vec![[0.0]]]).unwrap();
-    for set in [InstructionSet::Portable, InstructionSet::Avx2, InstructionSet::Avx512] {
-        let chosen = index.clone().with_instruction_set(set);
-        assert_eq!(chosen.is_ok(), InstructionSet::available().contains(&set));
-        if let Err(error) = chosen {
-            assert_eq!(error, SearchError::InstructionSet { set });
+        for threads in [1, 3] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+            let neighbours = pool.unwrap().install(|| index.nearest_batch(&queries, 70)).unwrap();
+            let neighbours: Vec<_> = neighbours.iter().map(|of_query| bits(of_query)).collect();
+            assert_eq!(neighbours, expected, "{threads} threads, gamma {gamma}");
         }
     }
 }

@@ -27,28 +27,19 @@ fn an_earlier_output_stays() {
     let before = files.clone().map(|name| place.read(&name));
     // Fills the disk completely.
     assert!(std::fs::write(out.join("filler"), vec![0; 8 << 20]).is_err());
-    // Several files: each is either the earlier or the new one.
-    let evaluate = format!("{EVALUATE} --protocol single --out out/report");
-    let commands = [
-        (
-            "forecast --model run tracks.csv --output out/forecasts.csv",
-            "out/forecasts.csv",
-        ),
-        (
-            "goals --model run tracks.csv --whole --output out/goals.csv",
-            "out/goals.csv",
-        ),
-        ("pack --model run --out out/packed", "out/packed"),
-        (&evaluate, "out/report"),
-    ];
-    for (command, named) in commands {
-        let message = place.run(command).fails();
+    for (command, named) in [
+        ("forecast --model run tracks.csv --output", "out/forecasts.csv"),
+        ("goals --model run tracks.csv --whole --output", "out/goals.csv"),
+        ("pack --model run --out", "out/packed"),
+        (&format!("{EVALUATE} --protocol single --out"), "out/report"),
+    ] {
+        let message = place.run(&format!("{command} {named}")).fails();
         assert!(message.contains(named) && message.contains("make room"), "{message}");
     }
     assert_eq!(half_written(&out), Vec::<String>::new());
     assert!(files.map(|name| place.read(&name)) == before);
     disk.resize(64 << 10);
-    let _ = place.ok(&evaluate);
+    let _ = place.ok(&format!("{EVALUATE} --protocol single --out out/report"));
 }
 
 #[test]

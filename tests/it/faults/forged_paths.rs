@@ -1,8 +1,8 @@
 //! Texts in a model file are never opened as paths.
 
 use super::EVALUATE;
+use ddl_tests::nightly;
 use ddl_tests::place::{Place, json};
-use ddl_tests::{nightly, safetensors_file};
 use serde_json::Value;
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -67,53 +67,6 @@ fn no_text_of_a_configuration_is_opened() {
             let ended = ends(&place, command, Duration::from_secs(30));
             assert!(ended, "{pointer} was opened by: {command}");
         }
-    }
-}
-
-/// Writes a run with this path as the names of fold, recordings, commit and device; it still loads.
-fn forge(place: &Place, original: &Value, path: &str) {
-    let mut config = original.clone();
-    for pointer in ["/data/fold", "/data/sha256", "/commit", "/libtorch", "/device"] {
-        *config.pointer_mut(pointer).unwrap() = path.into();
-    }
-    config["data"]["validation_recordings"] = vec![path].into();
-    place.write("run/config.json", config.to_string());
-    for name in ["model", "proposal", "experts"] {
-        let file = format!("run/{name}.safetensors");
-        let bytes = place.read(&file);
-        let (mut header, numbers) = safetensors_file::parts(&bytes).unwrap();
-        let mut origin: Value = json(header["__metadata__"]["origin"].as_str().unwrap());
-        for fact in ["data.fold", "data.sha256"] {
-            origin[fact] = path.into();
-        }
-        origin["data.validation_recordings"] = config["data"]["validation_recordings"].to_string().into();
-        header["__metadata__"]["origin"] = origin.to_string().into();
-        place.write(&file, safetensors_file::join(&header, numbers));
-    }
-}
-
-#[test]
-fn a_model_with_paths_as_names_forecasts_as_before() {
-    let place = Place::with_model();
-    let forecast = "forecast --model run tracks.csv --threads 1";
-    let pack = "pack --model run --out packed";
-    let expected = place.ok(forecast);
-    let original: Value = json(&place.text("run/config.json"));
-    let paths = [
-        pipe(&place),
-        "../../etc/passwd".to_owned(),
-        "/etc/passwd\u{0}x".to_owned(),
-    ];
-    for path in &paths {
-        forge(&place, &original, path);
-        for line in [forecast, pack] {
-            assert!(ends(&place, line, Duration::from_secs(30)), "{path} was opened");
-        }
-        assert_eq!(place.ok(forecast), expected);
-        let _ = place.ok(pack);
-        let _ = place.ok("forecast --model packed tracks.csv");
-        // Recordings are found only by the names of the convention, which has no such fold.
-        place.fails("evaluate --model run --threads 1", &["corridor"]);
     }
 }
 

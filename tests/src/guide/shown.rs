@@ -125,14 +125,6 @@ mod tests {
     }
 
     #[test]
-    fn a_shown_error_has_an_exit_code() {
-        let code = |lines: &str| exit_code(&console::commands(&format!("```console\n$ x\n{lines}```\n"))[0]);
-        assert_eq!(code("a\n"), "0");
-        assert_eq!(code("error: e\n"), "1");
-        assert_eq!(code("error: e\n\nFor more information, try '--help'.\n"), "2");
-    }
-
-    #[test]
     fn output_is_replaced_and_what_was_left_out_is_left_out_again() {
         let page = "a\n```console\n$ x\n1\n...\n3\n$ for i in 1; do\n>   echo $i\n> done\n1\n```\nb\n";
         let commands = console::commands(page);

@@ -19,24 +19,9 @@ fn windows() -> &'static [Window] {
     })
 }
 
-/// Reads JSON lines of forecasts.
-pub(super) fn json_lines(bytes: &[u8]) {
-    check(bytes, ExternalFormat::JsonLines);
-}
-
-/// Reads a table of forecasts.
-pub(super) fn table(bytes: &[u8]) {
-    check(bytes, ExternalFormat::Table);
-}
-
-/// Reads TrajNet++ ndjson of forecasts.
-pub(super) fn trajnet(bytes: &[u8]) {
-    check(bytes, ExternalFormat::TrajNet);
-}
-
 /// The first byte chooses whether a part of the pedestrians is sufficient; the others are the file. Forecasts that were
 /// read, written as JSON lines, must be read back unchanged.
-fn check(bytes: &[u8], format: ExternalFormat) {
+pub(super) fn check(bytes: &[u8], format: ExternalFormat) {
     let Some((&part, file)) = bytes.split_first() else {
         return;
     };

@@ -4,32 +4,8 @@
 use ddl_data::{Format, Observation, Position, Recording, parse_recording};
 use std::fmt::Write as _;
 
-/// The table format.
-pub(super) fn table(bytes: &[u8]) {
-    check(bytes, Format::Table);
-}
-
-/// The four lines of the convention `star`.
-pub(super) fn star_csv(bytes: &[u8]) {
-    check(bytes, Format::StarCsv);
-}
-
-/// The lines of the convention `social-gan`.
-pub(super) fn social_gan(bytes: &[u8]) {
-    check(bytes, Format::SocialGan);
-}
-
-/// TrajNet++ ndjson.
-pub(super) fn trajnet(bytes: &[u8]) {
-    check(bytes, Format::TrajNet);
-}
-
-/// The eight columns of `obsmat.txt`.
-pub(super) fn obsmat(bytes: &[u8]) {
-    check(bytes, Format::Obsmat);
-}
-
-fn check(bytes: &[u8], format: Format) {
+/// Reads a file of tracks in a format.
+pub(super) fn check(bytes: &[u8], format: Format) {
     let recording = match parse_recording(bytes, "fuzzed", format) {
         Ok(recording) => recording,
         Err(error) => {

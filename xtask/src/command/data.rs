@@ -71,21 +71,3 @@ impl Arguments {
         Ok(())
     }
 }
-
-#[test]
-fn a_fetch_does_not_pass_over_wrong_files() {
-    let (folder, workspace) = crate::recordings::tests::offline();
-    let data = folder.path().join("star");
-    for file in &Manifest::load(&workspace).unwrap().entry("star").unwrap().files {
-        crate::cache::write_file(&data.join(&file.name), b"wrong").unwrap();
-    }
-    let (action, convention, data) = (Action::Fetch, None, Some(data));
-    let error = Arguments {
-        action,
-        convention,
-        data,
-    }
-    .run(&workspace)
-    .unwrap_err();
-    assert!(error.to_string().starts_with("8 of 8 files"), "{error}");
-}

@@ -7,7 +7,7 @@ use std::path::Path;
 use anyhow::{Context, Result, ensure};
 
 use crate::cache::write_file;
-use crate::process::{run, shown};
+use crate::process::{run as run_command, shown};
 use crate::tools::Tools;
 use crate::workspace::Workspace;
 
@@ -39,7 +39,7 @@ pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
     }
     // Every warning is an error (`[workspace.lints.rustdoc]`).
     let arguments = format!("doc --workspace --no-deps --quiet --target-dir target {options}");
-    run(&mut workspace.cargo(arguments.split(' ')))?;
+    run_command(&mut workspace.cargo(arguments.split(' ')))?;
     let tools = Tools::ensure(workspace)?;
     render_book(workspace, &tools, &site.join("guide"))?;
     let api = site.join("api");
@@ -57,7 +57,7 @@ pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
         &site.join("index.html"),
         &site.join("guide"),
     ]);
-    run(lychee.args(fronts.filter(|page| page.is_file()))).context("links of the site lead nowhere (above)")
+    run_command(lychee.args(fronts.filter(|page| page.is_file()))).context("links of the site lead nowhere (above)")
 }
 
 /// The name of a crate in addresses, from its folder.

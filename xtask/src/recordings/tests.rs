@@ -71,7 +71,7 @@ fn a_wrong_file_is_reported_and_only_right_ones_stay() {
 }
 
 /// A workspace whose manifest leads nowhere.
-pub(crate) fn offline() -> (tempfile::TempDir, Workspace) {
+fn offline() -> (tempfile::TempDir, Workspace) {
     let folder = tempfile::tempdir().unwrap();
     let text = fs::read_to_string(Workspace::find().unwrap().path(MANIFEST)).unwrap();
     let lines = text.lines().map(|line| match line.split_once(" = ") {

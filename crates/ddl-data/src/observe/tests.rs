@@ -96,23 +96,6 @@ fn noise_is_measured() {
     }
 }
 
-/// Noise of 20 cm at 10 rows a second: the estimate is less than half as wrong as the rows at the steps.
-#[test]
-fn noise_is_averaged() {
-    let (mut of_rows, mut of_estimate) = (0.0, 0.0);
-    for seed in 0..50 {
-        let clean = walk((0..60).map(|k| 0.1 * f64::from(k)));
-        let rows = noisy(&clean, 0.2, seed);
-        let estimate = observed(&rows, rows[59].0);
-        for place in 0..8 {
-            let index = 59 - 4 * (7 - place);
-            of_rows += farthest(&[rows[index].1], &[clean[index].1]);
-            of_estimate += farthest(&[estimate.positions[place]], &[clean[index].1]);
-        }
-    }
-    assert!(of_estimate < 0.5 * of_rows, "{of_estimate} {of_rows}");
-}
-
 proptest! {
     /// A turned and moved track has a turned and moved estimate, at any clock.
     #[test]

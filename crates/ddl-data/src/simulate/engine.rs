@@ -22,15 +22,8 @@ const RESTLESSNESS: f64 = 0.12;
 /// An entry is free when no pedestrian is within this distance (m).
 const ENTRY_CLEARANCE: f64 = 0.7;
 
-#[derive(Debug)]
-pub(super) struct Trace {
-    pub(super) observations: Vec<Observation>,
-    /// Two or more pedestrians that entered together and stay together.
-    pub(super) groups: Vec<Vec<PedestrianId>>,
-}
-
 /// Runs a scene for `steps` recorded steps of 0.4 s.
-pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Trace {
+pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Vec<Observation> {
     let end = WARM_UP + steps as f64 * TIME_STEP;
     let parties = population::draw(layout, end, rng);
     let mut engine = Engine {
@@ -41,24 +34,19 @@ pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Tra
         next: 0,
         last_id: 0,
     };
-    let mut trace = Trace {
-        observations: Vec::new(),
-        groups: Vec::new(),
-    };
+    let mut observations = Vec::new();
     let warm_up = (WARM_UP / DT).round() as i64;
     for tick in 0..warm_up + steps * SUBSTEPS {
-        engine.admit(tick as f64 * DT, &mut trace.groups);
+        engine.admit(tick as f64 * DT);
         engine.step(rng);
         let recorded = tick - warm_up;
         if recorded >= 0 && recorded % SUBSTEPS == 0 {
             let frame = recorded / SUBSTEPS * FRAME_STEP;
             let seen = engine.pedestrians.iter();
-            trace
-                .observations
-                .extend(seen.map(|w| Observation::new(frame, w.id, w.motion.position)));
+            observations.extend(seen.map(|w| Observation::new(frame, w.id, w.motion.position)));
         }
     }
-    trace
+    observations
 }
 
 struct Engine<'a> {
@@ -72,7 +60,7 @@ struct Engine<'a> {
 }
 
 impl Engine<'_> {
-    fn admit(&mut self, time: f64, groups: &mut Vec<Vec<PedestrianId>>) {
+    fn admit(&mut self, time: f64) {
         while self.parties.get(self.next).is_some_and(|party| party.time <= time) {
             self.waiting.push(self.next);
             self.next += 1;
@@ -84,25 +72,20 @@ impl Engine<'_> {
                 .iter()
                 .all(|m| population::is_free(m.entry, &taken, ENTRY_CLEARANCE))
             {
-                let ids = self.enter(index);
-                if ids.len() > 1 {
-                    groups.push(ids);
-                }
+                self.enter(index);
             } else {
                 self.waiting.push(index);
             }
         }
     }
 
-    fn enter(&mut self, index: usize) -> Vec<PedestrianId> {
+    fn enter(&mut self, index: usize) {
         let party = &self.parties[index];
-        let mut ids = Vec::new();
         for member in &party.members {
             self.last_id += 1;
-            let id = PedestrianId(self.last_id);
             let heading = unit(sub(member.targets[0], member.entry));
             self.pedestrians.push(SimulatedPedestrian {
-                id,
+                id: PedestrianId(self.last_id),
                 party: index,
                 motion: WalkingMotion {
                     position: member.entry,
@@ -113,9 +96,7 @@ impl Engine<'_> {
                 rest_left: member.rest,
                 leg_start: member.entry,
             });
-            ids.push(id);
         }
-        ids
     }
 
     fn step(&mut self, rng: &mut ChaCha8Rng) {

@@ -1,16 +1,14 @@
-//! Obstacles of simulated scenes: walls and pillars.
+//! Walls, gates and pillars of simulated scenes.
 
-use ddl_core::Position;
+use ddl_core::{Position, between};
 
-use crate::simulate::vector::{add, dot, norm, scale, sub, unit};
+use crate::simulate::vector::{add, dot, left, norm, scale, sub, unit};
 
-/// A straight wall between two points, without thickness.
+/// A straight line between two points (m): a wall without thickness, or a gate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Wall {
-    /// One end (m).
-    pub(super) from: Position,
-    /// The other end (m).
-    pub(super) to: Position,
+pub(super) struct Line {
+    pub(super) a: Position,
+    pub(super) b: Position,
 }
 
 /// A round obstacle: a pillar, a tree, a fountain.
@@ -22,21 +20,35 @@ pub(super) struct Pillar {
     pub(super) radius: f64,
 }
 
-impl Wall {
-    /// A wall between two points (m).
-    pub(super) const fn new(from: Position, to: Position) -> Self {
-        Self { from, to }
+impl Line {
+    pub(super) const fn new(a: Position, b: Position) -> Self {
+        Self { a, b }
     }
 
-    /// The point of the wall nearest to `p` (m).
+    pub(super) fn at(&self, share: f64) -> Position {
+        between(self.a, self.b, share)
+    }
+
+    pub(super) fn width(&self) -> f64 {
+        norm(sub(self.b, self.a))
+    }
+
+    /// The direction across the gate that leads away from `from`.
+    pub(super) fn beyond(&self, from: Position) -> Position {
+        let normal = left(unit(sub(self.b, self.a)));
+        let ahead = dot(sub(self.at(0.5), from), normal);
+        if ahead < 0.0 { scale(normal, -1.0) } else { normal }
+    }
+
+    /// The point of the line nearest to `p` (m).
     pub(super) fn nearest(&self, p: Position) -> Position {
-        let along = sub(self.to, self.from);
+        let along = sub(self.b, self.a);
         let length_squared = dot(along, along);
         if length_squared == 0.0 {
-            return self.from;
+            return self.a;
         }
-        let share = (dot(sub(p, self.from), along) / length_squared).clamp(0.0, 1.0);
-        add(self.from, scale(along, share))
+        let share = (dot(sub(p, self.a), along) / length_squared).clamp(0.0, 1.0);
+        add(self.a, scale(along, share))
     }
 
     /// `p`, moved out of the wall far enough for a body of this radius.

@@ -74,36 +74,3 @@ impl SimulatedPedestrian {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::simulate::layout::GateLine;
-
-    fn desired(leg: fn(GateLine) -> Leg, place: Position) -> Position {
-        let gate = GateLine::new([0.0, -5.0], [0.0, 5.0]);
-        let pedestrian = SimulatedPedestrian {
-            id: PedestrianId(1),
-            party: 0,
-            motion: WalkingMotion {
-                position: place,
-                velocity: [0.0, 0.0],
-            },
-            targets: vec![[0.0, 0.0]],
-            leg: 0,
-            rest_left: 10.0,
-            leg_start: [-9.0, 0.0],
-        };
-        pedestrian.desired(&[leg(gate)], 1.2, place)
-    }
-
-    /// A pedestrian walks at 1.2 m/s to its stopping place and slows down over the last 0.6 m, but not at a gate.
-    #[test]
-    fn pedestrians_slow_down_only_where_they_will_stand() {
-        let near = |[x, y]: Position, expected: f64| (x - expected).abs() < 1e-12 && y.abs() < 1e-12;
-        assert!(near(desired(Leg::Stand, [-5.0, 0.0]), 1.2));
-        assert!(near(desired(Leg::Stand, [-0.5, 0.0]), 0.4));
-        assert!(near(desired(Leg::Pass, [-5.0, 0.0]), 1.2));
-        assert!(near(desired(Leg::Pass, [0.5, 0.0]), 1.2));
-    }
-}

@@ -5,7 +5,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp, Normal};
 
-use crate::simulate::layout::{GateLine, Leg, SceneLayout};
+use crate::simulate::layout::{Leg, SceneLayout};
+use crate::simulate::obstacle::Line;
 use crate::simulate::vector::{norm, sub};
 
 /// Mean and standard deviation of the desired speed of a lone pedestrian (m/s): Helbing and Molnár 1995.
@@ -107,7 +108,7 @@ fn choose_route(layout: &SceneLayout, rng: &mut ChaCha8Rng) -> usize {
 }
 
 /// Places across a gate for a group of this size, away from the gate's ends where it is wide enough.
-fn side_by_side(gate: GateLine, size: usize, across: f64) -> Vec<Position> {
+fn side_by_side(gate: Line, size: usize, across: f64) -> Vec<Position> {
     let room = (gate.width() - 2.0 * GATE_MARGIN).max(0.0);
     let spacing = GROUP_SPACING.min(room / size as f64);
     let span = spacing * (size - 1) as f64;

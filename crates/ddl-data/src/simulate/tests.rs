@@ -1,12 +1,11 @@
-//! Simulated crowds are realistic: plausible speeds, no pedestrian in a wall, groups that stay together.
+//! Simulated crowds are realistic: plausible speeds, no pedestrian in a wall.
 
-use ddl_core::{PedestrianId, Position, TIME_STEP, distance};
+use ddl_core::{Position, TIME_STEP, distance};
 
 use crate::dataset::Dataset;
 use crate::recording::Recording;
 use crate::simulate::layout::{SCENES, SceneLayout};
-use crate::simulate::obstacle::Wall;
-use crate::simulate::trace;
+use crate::simulate::obstacle::Line;
 use crate::simulate::vector::{cross, sub};
 
 const SEED: u64 = 1;
@@ -15,30 +14,26 @@ struct Crowd {
     scene: &'static str,
     layout: SceneLayout,
     recording: Recording,
-    groups: Vec<Vec<PedestrianId>>,
 }
 
 fn crowds() -> impl Iterator<Item = Crowd> {
     let recordings = Dataset::simulated(SEED).recordings().to_vec();
-    let scenes = (0..).zip(SCENES).zip(recordings);
-    scenes.map(|((stream, scene), recording)| {
-        let layout = (scene.layout)();
-        let groups = trace(&layout, stream, SEED).groups;
-        Crowd {
-            scene: scene.name,
-            layout,
+    SCENES
+        .into_iter()
+        .zip(recordings)
+        .map(|((scene, layout), recording)| Crowd {
+            scene,
+            layout: layout(),
             recording,
-            groups,
-        }
-    })
+        })
 }
 
 /// Whether the straight line from `a` to `b` (m) crosses the wall.
-fn is_blocked(wall: &Wall, a: Position, b: Position) -> bool {
-    let (way, along) = (sub(b, a), sub(wall.to, wall.from));
-    let side = |p| cross(along, sub(p, wall.from));
+fn is_blocked(wall: &Line, a: Position, b: Position) -> bool {
+    let (way, along) = (sub(b, a), sub(wall.b, wall.a));
+    let side = |p| cross(along, sub(p, wall.a));
     let other = |p| cross(way, sub(p, a));
-    side(a) * side(b) < 0.0 && other(wall.from) * other(wall.to) < 0.0
+    side(a) * side(b) < 0.0 && other(wall.a) * other(wall.b) < 0.0
 }
 
 /// Successive positions of every pedestrian (m), 0.4 s apart.
@@ -61,12 +56,6 @@ fn speeds(crowd: &Crowd) -> Vec<f64> {
 
 fn share(count: usize, total: usize) -> f64 {
     count as f64 / total as f64
-}
-
-fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> + '_ {
-    let recording = &crowd.recording;
-    let positions = |&frame| recording.at(frame).iter().map(|o| (o.pedestrian, o.position)).collect();
-    recording.frames().iter().map(positions)
 }
 
 #[test]
@@ -127,10 +116,11 @@ fn bodies_hardly_overlap() {
     for crowd in crowds() {
         let scene = crowd.scene;
         let (mut pairs, mut close) = (0, 0);
-        for pedestrians in scenes(&crowd) {
-            for (i, (_, a)) in pedestrians.iter().enumerate() {
-                let gaps = pedestrians[..i].iter().map(|(_, b)| distance(*a, *b));
-                for gap in gaps {
+        for &frame in crowd.recording.frames() {
+            let pedestrians = crowd.recording.at(frame);
+            for (i, one) in pedestrians.iter().enumerate() {
+                for other in &pedestrians[..i] {
+                    let gap = distance(one.position, other.position);
                     assert!(gap > 0.3, "{scene}: two centres {gap} m apart");
                     pairs += 1;
                     close += usize::from(gap < 0.38);
@@ -138,50 +128,5 @@ fn bodies_hardly_overlap() {
             }
         }
         assert!(share(close, pairs) < 1e-3, "{scene}: {close} of {pairs} pairs overlap");
-    }
-}
-
-#[test]
-fn pedestrians_enter_continuously_and_are_numbered_in_order() {
-    for crowd in crowds() {
-        let scene = crowd.scene;
-        let (mut entered, mut last) = (Vec::new(), 0);
-        for pedestrians in scenes(&crowd) {
-            let newest = pedestrians.iter().map(|(id, _)| id.0).max().unwrap_or(last);
-            assert!(pedestrians.iter().all(|(id, _)| id.0 >= 1), "{scene}");
-            entered.push(newest.max(last) - last);
-            last = newest.max(last);
-        }
-        for part in entered.chunks(entered.len().div_ceil(4)) {
-            let new: i64 = part.iter().sum();
-            let share = new as f64 / last as f64;
-            assert!((0.1..0.4).contains(&share), "{scene}: {share} of {last}");
-        }
-    }
-}
-
-#[test]
-fn groups_stay_together() {
-    for crowd in crowds() {
-        let scene = crowd.scene;
-        assert!(crowd.groups.len() > 10, "{scene}");
-        let mut gaps = Vec::new();
-        for pedestrians in scenes(&crowd) {
-            for group in &crowd.groups {
-                let members: Vec<_> = pedestrians
-                    .iter()
-                    .filter(|(id, _)| group.contains(id))
-                    .map(|p| p.1)
-                    .collect();
-                for (i, &a) in members.iter().enumerate() {
-                    gaps.extend(members[..i].iter().map(|&b| distance(a, b)));
-                }
-            }
-        }
-        let near = share(gaps.iter().filter(|&&gap| gap < 2.5).count(), gaps.len());
-        assert!(
-            near > 0.95,
-            "{scene}: within 2.5 m of each other in {near} of all steps"
-        );
     }
 }

@@ -237,32 +237,21 @@ fn formats_of_others_are_read_and_what_was_assumed_is_told() {
     assert_eq!(rate.stated_frame_time(), Some(1.0 / 25.0));
 }
 
+/// Files with their texts, and a part of the message.
+const MISREAD: &str = r"
+yolo.txt: 9 0 .48 .41 .51 .46 .50 .44\n8 0 .59 .48 .62 .53 .60 .50 => the fourth, the height, changes
+two.txt: 0 1 0 0\n0 2 0.5 0\n1 1 0.5 0\n1 2 1 0 => may be frame and pedestrian, or pedestrian and frame
+pandas.csv: ,a,b,c,d\n0,0,1,2,3 => still missing: frame, pedestrian, x, y
+wide.csv: frame,x1,y1,x2,y2,x3,y3\n0,1,2,3,4,5,6 => each pedestrian has columns of its own
+";
+
 /// Detections that look like the table of ETH, and others.
 #[test]
 fn what_is_read_wrongly_elsewhere_is_refused() {
-    for (name, text, problem) in [
-        (
-            "yolo.txt",
-            "9 0 .48 .41 .51 .46 .50 .44\n8 0 .59 .48 .62 .53 .60 .50\n",
-            "the fourth, the height, changes",
-        ),
-        (
-            "two.txt",
-            "0 1 0 0\n0 2 0.5 0\n1 1 0.5 0\n1 2 1 0\n",
-            "may be frame and pedestrian, or pedestrian and frame",
-        ),
-        (
-            "pandas.csv",
-            ",a,b,c,d\n0,0,1,2,3\n",
-            "still missing: frame, pedestrian, x, y",
-        ),
-        (
-            "wide.csv",
-            "frame,x1,y1,x2,y2,x3,y3\n0,1,2,3,4,5,6\n",
-            "each pedestrian has columns of its own",
-        ),
-    ] {
-        let found = read(name, text).unwrap_err();
+    for case in MISREAD.trim().lines() {
+        let (file, problem) = case.split_once(" => ").unwrap();
+        let (name, text) = file.split_once(": ").unwrap();
+        let found = read(name, &(text.replace("\\n", "\n") + "\n")).unwrap_err();
         assert!(found.contains(problem), "{found}");
     }
     let commas = ",".repeat(200_000) + "\n";

@@ -339,36 +339,6 @@ fn every_clock_is_observed() {
     );
 }
 
-/// A third of the rows lost: as many windows with futures and whole observations as with all rows.
-#[test]
-fn lost_rows_cost_no_windows() {
-    let ten = Pace::Rate(10.0);
-    let counts = |lost: f64| {
-        let recording = recording(
-            ten.clock(),
-            (0..20)
-                .flat_map(|seed| {
-                    let later = move |row: Observation| Observation {
-                        pedestrian: PedestrianId(row.pedestrian.0 + 10 * seed),
-                        ..row
-                    };
-                    film(ten, seed as u64, 0.0, lost).into_iter().map(later)
-                })
-                .collect(),
-        );
-        let len = |windows: Vec<Window>| windows.iter().map(Window::len).sum::<usize>();
-        [
-            len(recording.windows(WindowRule::Observed)),
-            len(recording.observed_windows()),
-        ]
-    };
-    let (all, some) = (counts(0.0), counts(0.33));
-    assert!(
-        (0..2).all(|which| some[which] as f64 > 0.95 * all[which] as f64),
-        "{some:?} of {all:?}"
-    );
-}
-
 /// Two rows a second, and a turn after 4.5 s: at 4.6 s nothing of it is known.
 #[test]
 fn between_rows_a_walk_goes_on_straight() {
@@ -429,27 +399,6 @@ fn a_wrong_position_is_left_out_and_told() {
                 "{rate} {off}: {seen:?}"
             );
             assert!((window.quality(0).age * rate - 1.0).abs() < 1e-9);
-        }
-    }
-}
-
-/// Two pedestrians 3 m apart exchange their numbers: both are told, and both tracks begin anew.
-#[test]
-fn an_exchange_of_numbers_begins_both_tracks() {
-    for rate in [2.5, 10.0] {
-        let from = (4.0 * rate) as usize;
-        let (told, window) = told(rate, 2, from, |id, [x, y]| [x, if id == 1 { y + 3.0 } else { y - 3.0 }]);
-        let kinds: Vec<_> = told
-            .iter()
-            .map(|misfit| (misfit.pedestrian.0, misfit.treatment == MisfitTreatment::BegunAnew))
-            .collect();
-        assert_eq!(kinds, [(1, true), (2, true)]);
-        for i in 0..2 {
-            let straight = |position: &Position| (position[1] - [6.0, 3.0][i]).abs() < 0.05;
-            assert!(
-                window.observed(i).iter().all(straight) && window.quality(i).unseen > 0,
-                "{window:?}"
-            );
         }
     }
 }

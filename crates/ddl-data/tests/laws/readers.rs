@@ -1,6 +1,6 @@
 //! Readers: every mistake in a file is reported with its place.
 
-use ddl_data::{Convention, DataError, Format, Observation, PedestrianId, parse_recording};
+use ddl_data::{Format, Observation, PedestrianId, parse_recording};
 
 pub(crate) fn complaint(text: impl AsRef<[u8]>, format: Format) -> String {
     parse_recording(text.as_ref(), "f", format).unwrap_err().to_string()
@@ -69,9 +69,7 @@ fn check(format: Format, cases: &str) {
     }
 }
 
-#[test]
-fn every_mistake_of_a_star_csv_file_is_named_with_its_place() {
-    let cases = r"
+const STAR_CSV: &str = r"
 => 1: the file holds no observation
 0,1\n1,1\n0,0 => 4: line missing
 0\n1\n0\n0\n0 => 5: unexpected line
@@ -84,12 +82,8 @@ fn every_mistake_of_a_star_csv_file_is_named_with_its_place() {
 0,1\n1,x\n0,0\n0,0 => 2, field 2: pedestrian must be a whole number
 0,1,0\n7,7,7\n0,0,0\n0,0,0 => 2, field 3: pedestrian 7 is in frame 0
 ";
-    check(Format::StarCsv, cases);
-}
 
-#[test]
-fn every_mistake_of_a_social_gan_file_is_named_with_its_place() {
-    let cases = r"
+const SOCIAL_GAN: &str = r"
  \n => 1: the file holds no observation
 0\t1\t0\t0\n0\t2\t0 => 2: 3 fields where 4 are expected
 0\t1\t0\t0\t9 => 1: 5 fields where 4 are expected
@@ -100,12 +94,8 @@ half 1 0 0 => 1, field 1: frame must be a whole number
 1e300 1 0 0 => 1, field 1: frame must be a whole number
 0 1 0 0\n0 2 0 0\n0 1 5 5 => 3: pedestrian 1 is in frame 0 already (line 1)
 ";
-    check(Format::SocialGan, cases);
-}
 
-#[test]
-fn every_mistake_of_a_table_file_is_named_with_its_place() {
-    let cases = r"
+const TABLE: &str = r"
 => 1: the file holds no observation
 frame,pedestrian,x,y\n => 1: the file holds no observation
 frame,pedestrian,x\n0,1,2 => 1: the header must name
@@ -118,12 +108,8 @@ x,y,frame,pedestrian\n0,0,1,2\n0,-,2,2\n => 3, field 2: y must be
 frame,pedestrian,x,y\n0,1,0,1e30 => 2, field 4: y must lie within 10000000 m
 frame,pedestrian,x,y\n0,1,2,3\n1,1,2,3\n0,1,2,3\n => 4: pedestrian 1 is
 ";
-    check(Format::Table, cases);
-}
 
-#[test]
-fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
-    let cases = r#"
+const TRAJNET: &str = r#"
 => 1: the file holds no observation
 {"scene": {"id": 0}} => 1: the file holds no observation
 [1, 2] => 1: the line must be one JSON object
@@ -141,16 +127,25 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
 {"track": {"f": 1, "p": 2, "x": 1, "y": null}} => 1: track.y must be a finite number
 {"track": {"f": 0, "p": 1, "x": 1e300, "y": 0}} => 1: track.x must lie within 10000000 m
 "#;
-    check(Format::TrajNet, cases);
+
+#[test]
+fn every_mistake_of_a_file_is_named_with_its_place() {
+    for (format, cases) in [
+        (Format::StarCsv, STAR_CSV),
+        (Format::SocialGan, SOCIAL_GAN),
+        (Format::Table, TABLE),
+        (Format::TrajNet, TRAJNET),
+        (Format::Obsmat, OBSMAT),
+    ] {
+        check(format, cases);
+    }
     let row = |y| format!(r#"{{"track": {{"f": 0, "p": 1, "x": 2, "y": {y}}}}}"#);
     let message = complaint(format!("{}\n{}\n", row("3"), row("3.5")), Format::TrajNet);
     let expected = "f, line 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]";
     assert!(message.starts_with(expected), "{message}");
 }
 
-#[test]
-fn every_mistake_of_an_obsmat_file_is_named_with_its_place() {
-    let cases = r"
+const OBSMAT: &str = r"
 => 1: the file holds no observation
 0 1 2 3 => 1: 4 fields where 8 are expected
 0 1 2 0 3 0 0 0\n1 1 2 0 3 0 0 0 0 => 2: 9 fields where 8 are expected
@@ -163,8 +158,6 @@ half 1 2 0 3 0 0 0 => 1, field 1: frame must be a whole number
 5 1 2 0 3 0 0 fast => 1, field 8: v_y must be a number
 5 1 2 0 3 0 0 0\n5 1 2 0 3 0 0 0 => 2: pedestrian 1 is in frame 5 already (line 1)
 ";
-    check(Format::Obsmat, cases);
-}
 
 #[test]
 fn the_most_common_difference_is_the_step() {
@@ -191,16 +184,6 @@ fn binary_files_are_refused() {
         let message = complaint(bytes, Format::Table);
         assert!(message.contains("is compressed"), "{message}");
     }
-}
-
-#[test]
-fn a_file_that_cannot_be_read_is_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let error = ddl_data::Dataset::load(Convention::Star, folder.path()).unwrap_err();
-    assert!(
-        matches!(&error, DataError::Read { path, .. } if path.ends_with("eth.csv")),
-        "{error}"
-    );
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Refused input leaves the memory unchanged.
 
-use ddl_data::{ClockError, LiveError, LiveTracks, PedestrianId};
+use ddl_data::{LiveTracks, PedestrianId};
 use ddl_memory::{MemoryError, SceneMemory};
 
 #[test]
@@ -57,14 +57,12 @@ fn input_of_live_tracks_is_accepted() {
 
 #[test]
 fn a_memory_needs_a_step_and_a_capacity() {
-    for step in [0, -1, (1 << 31) + 1, i64::MIN] {
-        let error = SceneMemory::new(step, 1);
-        let expected = LiveError::Clock(ClockError::FrameStep { found: step });
-        assert!(matches!(error, Err(MemoryError::Frame(found)) if found == expected));
-    }
-    for capacity in [0, (1 << 18) + 1, usize::MAX] {
-        let error = SceneMemory::new(1, capacity);
-        assert!(matches!(error, Err(MemoryError::Capacity { capacity: refused, .. }) if refused == capacity));
+    assert!(matches!(SceneMemory::new(0, 1), Err(MemoryError::Frame(_))));
+    for capacity in [0, (1 << 18) + 1] {
+        assert!(matches!(
+            SceneMemory::new(1, capacity),
+            Err(MemoryError::Capacity { .. })
+        ));
     }
     let mut memory = SceneMemory::new(1 << 31, 1 << 18).unwrap();
     memory.observe(1 - (1 << 53), [(PedestrianId(1), [0.0; 2])]).unwrap();

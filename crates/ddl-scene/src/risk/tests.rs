@@ -1,4 +1,4 @@
-use super::{crowd::Crowd, legs, quadrature};
+use super::{crowd::Crowd, legs};
 use crate::fixture::{futures, plan};
 use crate::{Futures, Plan, Risk, SceneError};
 use ddl_core::{Forecast, HORIZON, Position, TIME_STEP, Window};
@@ -51,35 +51,17 @@ const WEIGHTS: [f64; 3] = [0.5, 0.3, 0.2];
 #[test]
 fn monte_carlo_agrees() {
     let cases: Vec<Case> = serde_json::from_str(include_str!("../../tests/reference/risk.json")).unwrap();
-    let mut worst = [0.0_f64; 2];
     for case in &cases {
         let futures = futures(&case.starts, &case.velocities, &case.weights, &case.scales);
         let plan = plan(&case.plan);
         let risk = one(&futures, &plan, case.within);
+        let found = [&risk.pedestrians[..], &risk.steps, &risk.until].concat();
+        let expected = [&case.pedestrians[..], &case.steps, &case.until].concat();
+        assert!(close(&found, &expected, 0.02), "{found:?} {expected:?}");
         let clearance = futures.clearances(&[plan]).unwrap().remove(0);
-        let pairs = |found: &[f64], expected: &[f64]| {
-            let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
-            off.fold(0.0, f64::max)
-        };
-        let of_risk = pairs(&risk.pedestrians, &case.pedestrians).max(pairs(&risk.steps, &case.steps));
-        worst[0] = worst[0].max(of_risk).max(pairs(&risk.until, &case.until));
-        let of_clearance = pairs(&clearance.pedestrians, &case.clearances);
-        worst[1] = worst[1].max(of_clearance).max((clearance.nearest - case.nearest).abs());
-    }
-    assert!(worst[0] < 0.02 && worst[1] < 0.03, "{worst:?}");
-}
-
-/// Somebody stands where a standing plan is: at the start of a step it is close if its deviation is short.
-#[test]
-fn a_standing_pedestrian_has_the_closed_form() {
-    let futures = futures(&[[2.0, 1.0]], &[vec![[0.0; 2]]], &[1.0], &[0.5]);
-    for within in [0.0, 0.1, 0.5] {
-        let risk = one(&futures, &plan(&[[0.0, 2.0, 1.0, 0.2]]), within);
-        for (step, found) in risk.steps.iter().enumerate() {
-            let expected = quadrature::probability((within + 0.2) / (0.5 * step as f64 / 12.0));
-            assert!((found - expected).abs() <= 1.0 / 128.0, "{found} {expected}");
-        }
-        assert!((risk.total - 1.0).abs() < 1e-12);
+        let (found, expected) = (&clearance.pedestrians, &case.clearances);
+        assert!(close(found, expected, 0.03), "{found:?} {expected:?}");
+        assert!((clearance.nearest - case.nearest).abs() < 0.03, "{clearance:?}");
     }
 }
 
@@ -98,29 +80,6 @@ fn what_cannot_be_asked_is_refused() {
     let bare = Futures::new(&window, bare).unwrap();
     assert_eq!(bare.risks(&[], 0.5, None), Err(SceneError::NoSpread));
     assert_eq!(bare.clearances(&[]), Err(SceneError::NoSpread));
-}
-
-#[test]
-fn a_certain_meeting_and_a_far_plan() {
-    let futures = futures(
-        &[[0.0; 2], [3.0, 3.0]],
-        &[vec![[1.0, 0.0]], vec![[0.0, 1.0]]],
-        &[1.0],
-        &[1e-3, 0.3],
-    );
-    let towards = plan(&[[0.0, 4.8, 0.0, 0.2], [4.8, 0.0, 0.0, 0.2]]);
-    let risk = one(&futures, &towards, 0.1);
-    assert!(
-        close(&[risk.total, risk.steps[5], risk.steps[3]], &[1.0, 1.0, 0.0], 0.0),
-        "{risk:?}"
-    );
-    let far = plan(&[[0.0, 30.0, -30.0, 0.5]]);
-    assert!(one(&futures, &far, 1.0).total == 0.0);
-    let clearance = futures.clearances(&[towards, far]).unwrap();
-    assert!(
-        clearance[0].nearest == 0.0 && (clearance[1].pedestrians[0] - 39.0).abs() < 0.6,
-        "{clearance:?}"
-    );
 }
 
 proptest! {
