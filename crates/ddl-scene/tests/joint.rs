@@ -1,0 +1,172 @@
+//! Laws of joint futures.
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+use ddl_core::{Forecast, HORIZON, PedestrianId, Position, Window, distance};
+use ddl_scene::{JointMixture, Plan, PlanPoint, groups};
+use proptest::{collection::vec, prelude::*};
+
+/// Directions of the hypotheses relative to the way on (radians), and their weights.
+const TURNS: [f64; 5] = [0.0, 0.3, -0.3, 0.7, -0.7];
+const WEIGHTS: [f64; 5] = [0.4, 0.2, 0.2, 0.1, 0.1];
+const K: usize = TURNS.len();
+
+/// Where a pedestrian is, its heading (radians) and its speed (m/s).
+type Person = (Position, f64, f64);
+
+/// People who walked straight on, and a hypothesis for each turn; ids in the order of `ids`.
+fn scene(people: &[Person], ids: &[i64]) -> (Window, Forecast) {
+    let along = |[x, y]: Position, heading: f64, length: f64| [x + length * heading.cos(), y + length * heading.sin()];
+    let past = |&(at, heading, speed): &Person| {
+        (0..8)
+            .map(|t| along(at, heading, 0.4 * speed * f64::from(t - 7)))
+            .collect()
+    };
+    let ids = ids.iter().map(|&id| PedestrianId(id)).collect();
+    let window = Window::new("yard", 0, 1, ids, people.iter().map(past).collect()).unwrap();
+    let path = |(at, heading, speed): Person, turn: f64| {
+        (1..=12).map(move |t| along(at, heading + turn, 0.4 * speed * f64::from(t)))
+    };
+    let paths = people
+        .iter()
+        .flat_map(|&one| TURNS.into_iter().flat_map(move |turn| path(one, turn)));
+    let goals = people
+        .iter()
+        .flat_map(|&one| TURNS.map(|turn| path(one, turn).last().unwrap()));
+    let forecast = Forecast::new(
+        people.len(),
+        K,
+        paths.collect(),
+        WEIGHTS.repeat(people.len()),
+        Some(goals.collect()),
+    );
+    (window, forecast.unwrap())
+}
+
+fn mixture(people: &[Person]) -> (Forecast, JointMixture) {
+    let ids: Vec<i64> = (0..people.len() as i64).collect();
+    let (window, forecast) = scene(people, &ids);
+    let mixture = JointMixture::of(&window, &forecast, None, None);
+    (forecast, mixture)
+}
+
+/// The path of pedestrian `i` in future `k`.
+fn path(forecast: &Forecast, mixture: &JointMixture, i: usize, k: usize) -> Vec<Position> {
+    (0..HORIZON)
+        .map(|t| mixture.mean(i * K + k, |i, h| forecast.hypothesis(i, h)[t]))
+        .collect()
+}
+
+/// Probability of each hypothesis of pedestrian `i` over all futures.
+fn marginal(mixture: &JointMixture, i: usize) -> Vec<f64> {
+    let of_future = |k: usize, h: usize| mixture.weights[k] * f64::from(mixture.shares[(i * K + k) * K + h]);
+    (0..K).map(|h| (0..K).map(|k| of_future(k, h)).sum()).collect()
+}
+
+fn least(a: &[Position], b: &[Position]) -> f64 {
+    a.iter()
+        .zip(b)
+        .map(|(p, q)| distance(*p, *q))
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn crowd() -> impl Strategy<Value = Vec<Person>> {
+    let person = ([-6.0..6.0f64, -6.0..6.0f64], 0.0..6.2f64, 0.3..1.6f64);
+    vec(person, 2..9)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+
+    #[test]
+    fn weights_and_shares_are_probabilities(people in crowd()) {
+        let (_, mixture) = mixture(&people);
+        prop_assert!((mixture.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        prop_assert!(mixture.weights.is_sorted_by(|a, b| a >= b));
+        for shares in mixture.shares.chunks_exact(K) {
+            prop_assert!((shares.iter().sum::<f32>() - 1.0).abs() < 1e-4 && shares.iter().all(|share| *share >= 0.0));
+        }
+    }
+
+    #[test]
+    fn the_order_of_pedestrians_does_not_matter(people in crowd(), turn in 1..8usize) {
+        let ids: Vec<i64> = (0..people.len() as i64).collect();
+        let turn = turn % people.len();
+        let (mut others, mut other_ids) = (people.clone(), ids.clone());
+        others.rotate_left(turn);
+        other_ids.rotate_left(turn);
+        let [(a, b), (c, d)] = [scene(&people, &ids), scene(&others, &other_ids)];
+        let (one, mut other) = (JointMixture::of(&a, &b, None, None), JointMixture::of(&c, &d, None, None));
+        other.shares.rotate_right(turn * K * K);
+        prop_assert_eq!(one, other);
+    }
+
+    /// Another view of the same place, also far from its origin.
+    #[test]
+    fn turned_and_moved_scenes_have_turned_futures(people in crowd(), angle in 0.0..6.2f64, far in 0.0..3e5f64) {
+        let (sine, cosine) = angle.sin_cos();
+        let turned = people.iter().map(|&([x, y], heading, speed)| {
+            ([x * cosine - y * sine + far, x * sine + y * cosine - far], heading + angle, speed)
+        });
+        let ((_, one), (_, other)) = (mixture(&people), mixture(&turned.collect::<Vec<_>>()));
+        // Rounding may move a few samples.
+        let moved: f64 = one.weights.iter().zip(&other.weights).map(|(a, b)| (a - b).abs()).sum();
+        prop_assert!(moved < 0.1, "{:?} {:?}", one.weights, other.weights);
+    }
+
+    #[test]
+    fn pedestrians_far_apart_keep_their_weights(headings in vec(0.0..6.2f64, 2..5)) {
+        let people: Vec<Person> = headings.iter().zip(0..).map(|(&h, i)| ([100.0 * f64::from(i), 0.0], h, 1.2)).collect();
+        let (_, mixture) = mixture(&people);
+        for i in 0..people.len() {
+            for (found, weight) in marginal(&mixture, i).into_iter().zip(WEIGHTS) {
+                prop_assert!((found - weight).abs() < 0.1, "{found} of {weight}");
+            }
+        }
+    }
+
+    #[test]
+    fn people_who_walk_together_stay_together(heading in 0.0..6.2f64, speed in 0.8..1.6f64) {
+        let side = [0.8 * -heading.sin(), 0.8 * heading.cos()];
+        let people = [([0.0, 0.0], heading, speed), (side, heading, speed)];
+        let (window, _) = scene(&people, &[1, 2]);
+        prop_assert_eq!(groups(&window), vec![vec![0, 1]]);
+        let (forecast, mixture) = mixture(&people);
+        for (k, weight) in mixture.weights.iter().enumerate() {
+            let [a, b] = [0, 1].map(|i| path(&forecast, &mixture, i, k)[HORIZON - 1]);
+            prop_assert!(*weight < 0.1 || distance(a, b) < 1.5, "future {k}: {}", distance(a, b));
+        }
+    }
+
+    /// Two who walk towards each other collide where both go straight on, as independent ones do in 2 of 5 cases.
+    #[test]
+    fn people_do_not_walk_through_each_other(apart in 3.0..9.0f64, aside in -0.2..0.2f64) {
+        let people = [([0.0, 0.0], 0.0, 1.0), ([apart, aside], std::f64::consts::PI, 1.0)];
+        let (forecast, mixture) = mixture(&people);
+        for k in 0..K {
+            let [a, b] = [0, 1].map(|i| path(&forecast, &mixture, i, k));
+            prop_assert!(mixture.weights[k] == 0.0 || least(&a, &b) > 0.3, "future {k}: {}", least(&a, &b));
+        }
+    }
+
+    #[test]
+    fn a_plan_far_away_changes_nothing_and_one_in_the_way_is_avoided(people in crowd(), x in 2.0..4.0f64) {
+        let ids: Vec<i64> = (0..people.len() as i64).collect();
+        let standing = |position: Position| Plan::new(vec![PlanPoint { time: 0.0, position, radius: 0.0 }]).unwrap();
+        let (window, forecast) = scene(&people, &ids);
+        let far = standing([900.0, 0.0]);
+        let given = |plan| JointMixture::of(&window, &forecast, plan, None);
+        prop_assert_eq!(given(Some(&far)), given(None));
+        let (window, forecast) = scene(&[([0.0, 0.0], 0.0, 1.2)], &[1]);
+        let mixture = JointMixture::of(&window, &forecast, Some(&standing([x, 0.0])), None);
+        prop_assert!(marginal(&mixture, 0)[0] < 0.1, "{:?}", marginal(&mixture, 0));
+    }
+}
+
+#[test]
+fn one_pedestrian_has_its_hypotheses() {
+    let (forecast, mixture) = mixture(&[([1.0, 2.0], 0.4, 1.1)]);
+    assert_eq!(mixture.weights, WEIGHTS);
+    for k in 0..K {
+        assert_eq!(path(&forecast, &mixture, 0, k), forecast.hypothesis(0, k));
+    }
+}
