@@ -39,7 +39,7 @@ from numpy.typing import NDArray
 from regions import TESTED, Floats, recordings_of
 
 Flags = NDArray[np.bool_]
-MOMENTS = 600  # at most this many of a place
+MOST, FEW, PEDESTRIANS = 600, 300, 5000  # at most so many moments of a place; FEW where they have more pedestrians
 EGOS = 4  # at most this many pedestrians of a moment play the robot
 WITHIN = 0.5  # metres from a plan that count as close
 BINS = 10
@@ -86,7 +86,9 @@ def places(star: str, others: Sequence[str], least: int) -> Iterator[Place]:
 
 def place(name: str, model: str, recordings: Sequence[ddl.Recording], least: int, scene: bool) -> Place:
     windows = [window for of in recordings for window in ddl.windows(of) if len(window.past) >= least]
-    chosen = np.linspace(0, len(windows) - 1, min(MOMENTS, len(windows))).round().astype(int)
+    size = np.mean([len(window.past) for window in windows])
+    count = min(len(windows), MOST, max(FEW, int(PEDESTRIANS / size)))
+    chosen = np.linspace(0, len(windows) - 1, count).round().astype(int)
     print(f"{name}: {len(chosen)} of {len(windows)} moments", file=sys.stderr, flush=True)
     return Place(name, model, [windows[index] for index in chosen], scene)
 

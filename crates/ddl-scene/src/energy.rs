@@ -148,6 +148,11 @@ impl Energy {
 }
 
 impl PairEnergy {
+    /// Distance (m) from which paths have no conflict.
+    pub(crate) fn reach(&self) -> f32 {
+        2.5 * self.near
+    }
+
     /// The energy of paths that come this close (m).
     pub(crate) fn conflict(&self, distance: f32) -> f32 {
         let at = 2.0 * distance / self.near;

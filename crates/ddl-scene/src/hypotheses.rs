@@ -10,7 +10,7 @@ pub(crate) struct Hypotheses {
     pub(crate) present: Position,
     /// `[K]`.
     pub(crate) weights: Vec<f32>,
-    /// Coordinates `[axis][t][K]` relative to the present position, metres; t = 0 is the present.
+    /// Coordinates `[axis][t][K]` relative to the present position, metres, at the present and every half step.
     paths: [Vec<f32>; 2],
     /// Largest distance from the present position, metres.
     pub(crate) reach: f64,
@@ -32,14 +32,17 @@ impl Hypotheses {
 
     fn new<'a>(present: Position, weights: Vec<f32>, path: impl Fn(usize) -> &'a [Position]) -> Self {
         let count = weights.len();
-        let mut paths = [0, 1].map(|_| vec![0.0; (HORIZON + 1) * count]);
+        let mut paths = [0, 1].map(|_| vec![0.0; (2 * HORIZON + 1) * count]);
         let mut reach = 0.0_f64;
         for k in 0..count {
             for (t, position) in (1..).zip(path(k)) {
                 let from_present = [0, 1].map(|axis| position[axis] - present[axis]);
                 reach = reach.max(from_present[0].hypot(from_present[1]));
                 for axis in 0..2 {
-                    paths[axis][t * count + k] = from_present[axis] as f32;
+                    let before = paths[axis][(2 * t - 2) * count + k];
+                    let position = from_present[axis] as f32;
+                    paths[axis][(2 * t - 1) * count + k] = 0.5 * (before + position);
+                    paths[axis][2 * t * count + k] = position;
                 }
             }
         }
@@ -58,6 +61,11 @@ impl Hypotheses {
 
     /// The x (axis 0) or y (axis 1) of all hypotheses at step `t`, 0 to 12, relative to the present position, metres.
     pub(crate) fn at(&self, axis: usize, t: usize) -> &[f32] {
+        self.halfway(axis, 2 * t)
+    }
+
+    /// As [`at`](Self::at), for `t` half steps, 0 to 24.
+    pub(crate) fn halfway(&self, axis: usize, t: usize) -> &[f32] {
         let count = self.count();
         &self.paths[axis][t * count..][..count]
     }

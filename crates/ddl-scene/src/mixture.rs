@@ -11,7 +11,7 @@ use ddl_core::{Forecast, HORIZON, Position, Spread, TIME_STEP, Window};
 /// Samples of a scene.
 const SAMPLES: usize = 300;
 /// Gibbs sweeps of each sample.
-const SWEEPS: usize = 2;
+const SWEEPS: usize = 1;
 
 /// K joint futures of N pedestrians with H hypotheses: in future k pedestrian i follows a mixture of its hypotheses.
 #[derive(Debug, Clone, PartialEq)]

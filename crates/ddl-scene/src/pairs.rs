@@ -1,7 +1,7 @@
 //! The pairs of pedestrians that may meet or walk together, with a table of factors for each.
 
 use crate::energy::{Energy, PairEnergy};
-use crate::hypotheses::{Hypotheses, least_squared};
+use crate::hypotheses::Hypotheses;
 use ddl_core::{HORIZON, Position, distance};
 use ddl_data::SpatialIndex;
 use std::collections::BTreeSet;
@@ -91,19 +91,16 @@ fn table(energy: &PairEnergy, first: &Hypotheses, second: &Hypotheses) -> Option
     let (rows, columns) = (first.count(), second.count());
     let mut energies = vec![0.0; rows * columns];
     let mut least = vec![f32::INFINITY; columns];
-    let reach = 2.5 * energy.near;
+    let reach = energy.reach();
     let mut some = false;
     for a in 0..rows {
         least.fill(f32::INFINITY);
-        for t in 0..HORIZON {
-            let [ax, ay] = [0, 1].map(|axis| [t, t + 1].map(|t| first.at(axis, t)[a] - to_second[axis]));
-            let [bx, by] = [0, 1].map(|axis| [t, t + 1].map(|t| second.at(axis, t)));
-            for b in 0..columns {
-                let squared = least_squared(
-                    [bx[0][b] - ax[0], by[0][b] - ay[0]],
-                    [bx[1][b] - ax[1], by[1][b] - ay[1]],
-                );
-                least[b] = if squared < least[b] { squared } else { least[b] };
+        for t in 1..=2 * HORIZON {
+            let [ax, ay] = [0, 1].map(|axis| first.halfway(axis, t)[a] - to_second[axis]);
+            let [bx, by] = [0, 1].map(|axis| second.halfway(axis, t));
+            for ((least, x), y) in least.iter_mut().zip(bx).zip(by) {
+                let squared = (x - ax) * (x - ax) + (y - ay) * (y - ay);
+                *least = if squared < *least { squared } else { *least };
             }
         }
         let row = &mut energies[a * columns..][..columns];
@@ -127,15 +124,16 @@ fn table(energy: &PairEnergy, first: &Hypotheses, second: &Hypotheses) -> Option
 
 /// The factors of the second given the first and of the first given the second, each row with its largest as 1.
 fn factors(energies: &[f32], rows: usize, columns: usize) -> [Vec<f32>; 2] {
-    let transposed: Vec<f32> = (0..columns)
-        .flat_map(|b| (0..rows).map(move |a| energies[a * columns + b]))
-        .collect();
-    [(energies, columns), (&transposed, rows)].map(|(energies, length)| {
-        let rows = energies.chunks_exact(length);
-        rows.flat_map(|row| {
-            let least = row.iter().copied().fold(f32::INFINITY, f32::min);
-            row.iter().map(move |energy| (least - energy).exp().max(LEAST_FACTOR))
-        })
-        .collect()
+    let of_second: Vec<f32> = energies.iter().map(|energy| (-energy).exp()).collect();
+    let turned = |b: usize| (0..rows).map(move |a| a * columns + b);
+    let of_first = (0..columns).flat_map(turned).map(|index| of_second[index]).collect();
+    [(of_second, columns), (of_first, rows)].map(|(mut factors, length)| {
+        for row in factors.chunks_exact_mut(length) {
+            let largest = row.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+            for factor in row {
+                *factor = (*factor / largest).max(LEAST_FACTOR);
+            }
+        }
+        factors
     })
 }

@@ -1,7 +1,8 @@
 //! K clusters of the samples, as points of the joint space of all pedestrians: k-means.
 //!
 //! The quantisation of the joint distribution keeps the error of the best of K futures small: each future is the mean
-//! of a cluster of similar scenes.
+//! of a cluster of similar scenes. A sample is a hypothesis of each pedestrian, so its squared distance to a centre is a
+//! sum over pedestrians of entries of small tables, and a centre is the number of its samples with each hypothesis.
 
 use crate::hypotheses::Hypotheses;
 use rand::{RngExt as _, SeedableRng as _};
@@ -9,110 +10,122 @@ use rand_chacha::ChaCha8Rng;
 
 /// Steps that represent a path: 1.6, 3.2 and 4.8 s.
 const STEPS: [usize; 3] = [4, 8, 12];
-/// Coordinates of a pedestrian in the joint space.
-const OF_EACH: usize = 2 * STEPS.len();
 const MOST_ITERATIONS: usize = 10;
 
-/// The cluster of each sample, `[S]`, 0 to `clusters` - 1; every cluster has a sample if there are as many samples.
+/// The cluster of each sample, `[S]`, 0 to `clusters` - 1.
 pub(crate) fn clusters(people: &[Hypotheses], chosen: &[Vec<u8>], clusters: usize) -> Vec<usize> {
-    let points = points(people, chosen);
-    let width = people.len() * OF_EACH;
-    let count = points.len() / width;
-    let point = |s: usize| &points[s * width..][..width];
-    let mut centres = first_centres(&point, count, clusters);
+    let count = chosen.first().map_or(0, Vec::len);
+    let mut centres = first_centres(people, chosen, count, clusters);
     let mut labels = vec![0; count];
-    for _ in 0..MOST_ITERATIONS {
-        let nearest: Vec<usize> = (0..count).map(|s| nearest(point(s), &centres).0).collect();
-        if nearest == labels {
+    for iteration in 0..MOST_ITERATIONS {
+        let distances = distances(people, chosen, &centres);
+        let nearest: Vec<usize> = distances.chunks_exact(centres.len()).map(least).collect();
+        if iteration > 0 && nearest == labels {
             break;
         }
         labels = nearest;
-        let mut sizes = vec![0.0_f32; centres.len()];
-        let mut sums = vec![vec![0.0_f32; width]; centres.len()];
-        for (s, &label) in labels.iter().enumerate() {
-            sizes[label] += 1.0;
-            for (sum, x) in sums[label].iter_mut().zip(point(s)) {
-                *sum += x;
-            }
-        }
-        for ((centre, mut sum), size) in centres.iter_mut().zip(sums).zip(&sizes) {
-            if *size > 0.0 {
-                for x in &mut sum {
-                    *x /= size;
-                }
-                *centre = sum;
-            }
-        }
+        centres = means(people, chosen, &labels, &centres);
     }
     labels
 }
 
-/// The samples as points `[S][N x 6]`, metres from the present positions.
-fn points(people: &[Hypotheses], chosen: &[Vec<u8>]) -> Vec<f32> {
-    let count = chosen.first().map_or(0, Vec::len);
-    let width = people.len() * OF_EACH;
-    let mut points = vec![0.0; count * width];
-    for (i, (one, chosen)) in people.iter().zip(chosen).enumerate() {
-        for (s, &hypothesis) in chosen.iter().enumerate() {
-            let point = &mut points[s * width + i * OF_EACH..][..OF_EACH];
-            for (place, (axis, t)) in point.iter_mut().zip([0, 1].iter().flat_map(|a| STEPS.map(|t| (*a, t)))) {
-                *place = one.at(axis, t)[usize::from(hypothesis)];
-            }
-        }
-    }
-    points
-}
+/// A centre: `[N]` of the steps' x, then y, relative to the present positions, metres.
+type Centre = Vec<[[f32; STEPS.len()]; 2]>;
 
-/// k-means++: each next centre is a sample, drawn in proportion to its squared distance to the centres so far.
-fn first_centres<'a>(point: &impl Fn(usize) -> &'a [f32], count: usize, clusters: usize) -> Vec<Vec<f32>> {
+/// k-means++: each next centre is a sample, drawn in proportion to its squared distance to the centres so far. Fewer
+/// where there are fewer different samples.
+fn first_centres(people: &[Hypotheses], chosen: &[Vec<u8>], count: usize, clusters: usize) -> Vec<Centre> {
     let mut random = ChaCha8Rng::seed_from_u64(0);
-    let mut centres = vec![point(0).to_vec()];
-    let mut distances = vec![f32::INFINITY; count];
+    let sample = |s: usize| {
+        people
+            .iter()
+            .zip(chosen)
+            .map(|(one, chosen)| place(one, usize::from(chosen[s])))
+            .collect()
+    };
+    let mut centres: Vec<Centre> = vec![sample(0)];
+    let mut nearest = vec![f32::INFINITY; count];
     while centres.len() < clusters {
-        let Some(last) = centres.last() else { break };
-        for (s, distance) in distances.iter_mut().enumerate() {
-            *distance = distance.min(squared(point(s), last));
+        let to_last = distances(people, chosen, &centres[centres.len() - 1..]);
+        for (nearest, distance) in nearest.iter_mut().zip(to_last) {
+            *nearest = nearest.min(distance);
         }
-        let total: f32 = distances.iter().sum();
+        let total: f32 = nearest.iter().sum();
         let mut rest = random.random::<f32>() * total;
-        let drawn = distances.iter().position(|distance| {
+        let drawn = nearest.iter().position(|distance| {
             rest -= distance;
             rest < 0.0
         });
         match drawn {
-            Some(s) if total > 0.0 => centres.push(point(s).to_vec()),
-            // Fewer different samples than clusters.
+            Some(s) if total > 0.0 => centres.push(sample(s)),
             _ => break,
         }
     }
     centres
 }
 
-fn nearest(point: &[f32], centres: &[Vec<f32>]) -> (usize, f32) {
-    let mut best = (0, f32::INFINITY);
-    for (c, centre) in centres.iter().enumerate() {
-        let distance = squared(point, centre);
-        if distance < best.1 {
-            best = (c, distance);
+fn place(one: &Hypotheses, hypothesis: usize) -> [[f32; STEPS.len()]; 2] {
+    [0, 1].map(|axis| STEPS.map(|t| one.at(axis, t)[hypothesis]))
+}
+
+/// Squared distances `[S][centres]` (m²).
+fn distances(people: &[Hypotheses], chosen: &[Vec<u8>], centres: &[Centre]) -> Vec<f32> {
+    let count = chosen.first().map_or(0, Vec::len);
+    let mut distances = vec![0.0; count * centres.len()];
+    let mut table = Vec::new();
+    for (i, (one, chosen)) in people.iter().zip(chosen).enumerate() {
+        table.clear();
+        for hypothesis in 0..one.count() {
+            let [x, y] = place(one, hypothesis);
+            table.extend(centres.iter().map(|centre| {
+                let off = |place: &[f32; 3], centre: &[f32; 3]| {
+                    place.iter().zip(centre).map(|(a, b)| (a - b) * (a - b)).sum::<f32>()
+                };
+                off(&x, &centre[i][0]) + off(&y, &centre[i][1])
+            }));
+        }
+        for (sums, &hypothesis) in distances.chunks_exact_mut(centres.len()).zip(chosen) {
+            let row = &table[usize::from(hypothesis) * centres.len()..][..centres.len()];
+            for (sum, distance) in sums.iter_mut().zip(row) {
+                *sum += distance;
+            }
+        }
+    }
+    distances
+}
+
+/// The means of the clusters; a cluster without samples keeps its centre.
+fn means(people: &[Hypotheses], chosen: &[Vec<u8>], labels: &[usize], before: &[Centre]) -> Vec<Centre> {
+    let mut sizes = vec![0.0_f32; before.len()];
+    for &label in labels {
+        sizes[label] += 1.0;
+    }
+    let mut centres = before.to_vec();
+    for (i, (one, chosen)) in people.iter().zip(chosen).enumerate() {
+        let mut shares = vec![0.0_f32; before.len() * one.count()];
+        for (&label, &hypothesis) in labels.iter().zip(chosen) {
+            shares[label * one.count() + usize::from(hypothesis)] += 1.0 / sizes[label];
+        }
+        for ((centre, shares), _) in centres
+            .iter_mut()
+            .zip(shares.chunks_exact(one.count()))
+            .zip(&sizes)
+            .filter(|(_, size)| **size > 0.0)
+        {
+            let mean = |axis: usize, t: usize| one.at(axis, t).iter().zip(shares).map(|(x, share)| x * share).sum();
+            centre[i] = [0, 1].map(|axis| STEPS.map(|t| mean(axis, t)));
+        }
+    }
+    centres
+}
+
+/// The index of the least number, the first of equal ones.
+fn least(distances: &[f32]) -> usize {
+    let mut best = 0;
+    for (index, distance) in distances.iter().enumerate() {
+        if *distance < distances[best] {
+            best = index;
         }
     }
     best
-}
-
-/// Squared distance, in eight sums, which are computed on vectors.
-fn squared(a: &[f32], b: &[f32]) -> f32 {
-    let mut sums = [0.0_f32; 8];
-    let (a_rows, b_rows) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f32 = a_rows
-        .remainder()
-        .iter()
-        .zip(b_rows.remainder())
-        .map(|(x, y)| (x - y) * (x - y))
-        .sum();
-    for (a, b) in a_rows.zip(b_rows) {
-        for ((sum, x), y) in sums.iter_mut().zip(a).zip(b) {
-            *sum += (x - y) * (x - y);
-        }
-    }
-    sums.iter().sum::<f32>() + rest
 }
