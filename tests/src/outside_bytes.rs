@@ -42,7 +42,7 @@ pub const READERS: [Reader; 21] = [
     Reader("table", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Table)),
     Reader("star_csv", Seeds::Corpus, |bytes| tracks::check(bytes, Format::StarCsv)),
     Reader("social_gan", Seeds::Corpus, |bytes| {
-        tracks::check(bytes, Format::SocialGan)
+        tracks::check(bytes, Format::SocialGan);
     }),
     Reader("trajnet", Seeds::Corpus, |bytes| tracks::check(bytes, Format::TrajNet)),
     Reader("obsmat", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Obsmat)),
@@ -51,13 +51,13 @@ pub const READERS: [Reader; 21] = [
     Reader("live_tracks", Seeds::Corpus, live_tracks::read),
     Reader("homography", Seeds::Corpus, values::homography),
     Reader("foreign_json_lines", Seeds::Corpus, |bytes| {
-        external::check(bytes, ExternalFormat::JsonLines)
+        external::check(bytes, ExternalFormat::JsonLines);
     }),
     Reader("foreign_table", Seeds::Corpus, |bytes| {
-        external::check(bytes, ExternalFormat::Table)
+        external::check(bytes, ExternalFormat::Table);
     }),
     Reader("foreign_trajnet", Seeds::Corpus, |bytes| {
-        external::check(bytes, ExternalFormat::TrajNet)
+        external::check(bytes, ExternalFormat::TrajNet);
     }),
     Reader("report", Seeds::Corpus, values::report),
     Reader("moments", Seeds::Corpus, values::moments),

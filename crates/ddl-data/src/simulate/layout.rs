@@ -46,8 +46,10 @@ pub(super) struct SceneLayout {
     pub(super) arrival_interval: f64,
 }
 
+type MakeLayout = fn() -> SceneLayout;
+
 /// The scenes with their names, which are those of their recordings and folds.
-pub(super) const SCENES: [(&str, fn() -> SceneLayout); 5] = [
+pub(super) const SCENES: [(&str, MakeLayout); 5] = [
     ("corridor", corridor),
     ("crossing", crossing),
     ("plaza", plaza),
