@@ -10,9 +10,9 @@ fn straight([x, y]: Position, angle: f64) -> impl Iterator<Item = Position> {
     (1..=HORIZON).map(move |t| [x + dx * t as f64, y + dy * t as f64])
 }
 
-/// 25 people in a square of 16 m, who walk in all directions. Their futures end some metres apart.
+/// 25 people in a square of 20 m, who walk in all directions. Their futures end some metres apart.
 fn crowd() -> Futures {
-    let starts: Vec<Position> = (0..25).map(|i| [4 * (i % 5), 4 * (i / 5)].map(f64::from)).collect();
+    let starts: Vec<Position> = (0..25).map(|i| [5 * (i % 5), 5 * (i / 5)].map(f64::from)).collect();
     let tracks = starts.iter().map(|&start| vec![start; OBSERVED]).collect();
     let window = Window::new("yard", 0, 10, (0..25).map(PedestrianId).collect(), tracks).expect("valid");
     let path = |row: usize| straight(starts[row / 20], 2.4 * (row / 20) as f64 + 0.05 * (row % 20) as f64);
@@ -33,7 +33,7 @@ fn risk(criterion: &mut Criterion) {
         position,
         radius: 0.3,
     };
-    let path = |i: i32| (1..).zip(straight([8.0; 2], 0.00628 * f64::from(i)));
+    let path = |i: i32| (1..).zip(straight([10.0; 2], 0.00628 * f64::from(i)));
     let plan = |i| Plan::new(path(i).map(row).collect()).expect("valid");
     let plans: Vec<Plan> = (0..1000).map(plan).collect();
     criterion.bench_function("risks of 1000 plans", |b| b.iter(|| futures.risks(&plans, 0.3, None)));

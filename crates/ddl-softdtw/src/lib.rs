@@ -19,8 +19,8 @@
 //! exp(−cost/γ) is a power of two. A query runs the recursion on all lanes at once in the exponential domain, where the
 //! smoothed minimum is one addition. It keeps every candidate whose score may belong to the n best. The `f32` scores
 //! only preselect candidates (the sieve): a bound of their error is computed from the lengths, the dimension and the
-//! size of the data. Every candidate within that bound of the n-th score is evaluated again in `f64`, as a single value.
-//! The `f64` values decide the set, its order and the returned distances. Ties are broken by the index of the candidate.
+//! size of the data. Every candidate within that bound of the n-th score is evaluated again in `f64`, as a single
+//! value. The `f64` values decide the set, its order and the returned distances. Ties are broken by the index.
 //! So the results, including the distances, have the same bits for every instruction set, every number of threads and
 //! every batch of queries. A candidate that equals the query is at distance 0.
 //!

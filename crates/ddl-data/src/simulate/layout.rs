@@ -46,11 +46,10 @@ pub(super) struct SceneLayout {
     pub(super) arrival_interval: f64,
 }
 
-/// A scene by name, and how it is laid out.
-type NamedLayout = (&'static str, fn() -> SceneLayout);
+type MakeLayout = fn() -> SceneLayout;
 
 /// The scenes with their names, which are those of their recordings and folds.
-pub(super) const SCENES: [NamedLayout; 5] = [
+pub(super) const SCENES: [(&str, MakeLayout); 5] = [
     ("corridor", corridor),
     ("crossing", crossing),
     ("plaza", plaza),
