@@ -24,6 +24,7 @@ mod other_program;
 mod own_recordings;
 mod packed;
 mod regions;
+mod scenes;
 mod tracks_as_they_come;
 
 #[test]

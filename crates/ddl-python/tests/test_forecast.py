@@ -311,3 +311,30 @@ def test_wrong_kinds_of_arguments(forecaster, tracks, crossing):
     with pytest.raises(ValueError, match=r"past\[None\]"):
         forecaster.forecast(crossing[0])
     assert repr(forecaster.forecast(crossing)) == "Forecast(25 pedestrians, 20 hypotheses)"
+
+
+def test_joint_futures_and_their_answers(forecaster, crossing):
+    scene = crossing[:6]
+    forecast = forecaster.forecast(scene, joint=True)
+    assert forecast.futures.shape == (20, 6, 12, 2) and forecast.certified.all()
+    assert (forecast.weights == forecast.weights[0]).all() and np.isclose(forecast.weights[0].sum(), 1)
+    plan = np.column_stack([0.4 * np.arange(1, 13), forecast.most_likely()[0]])
+    far = plan + [0, 500, 0]
+    risk = forecast.risk([plan, far])
+    assert risk.total.shape == (2,) and risk.pedestrians.shape == (2, 6) and risk.until.shape == (2, 12)
+    assert risk.total[0] > 0.1 and risk.total[1] < 1e-9
+    assert forecast.risk([plan], seen=False).total[0] >= risk.total[0]
+    assert forecast.risk([plan], ego=0).pedestrians[0, 0] == 0
+    nearest, of_each = forecast.nearest([plan, far])
+    assert nearest[0] < nearest[1] and of_each.shape == (2, 6)
+    grid = forecast.occupancy(0.5, every=1.2)
+    assert grid.probabilities.shape[0] == 5 and 0 <= grid.probabilities.min() <= grid.probabilities.max() <= 1
+    assert len(grid.message(0)["data"]) == grid.probabilities[0].size
+    given = forecaster.forecast(scene, joint=True, plan=plan, ego=5)
+    assert np.allclose(given.futures[:, 5], plan[:, 1:])
+    with pytest.raises(ValueError, match="joint=True"):
+        forecaster.forecast(scene).futures  # noqa: B018
+    with pytest.raises(ValueError, match="sort the rows"):
+        forecast.risk([plan[::-1]])
+    with pytest.raises(ValueError, match="is not among"):
+        forecast.risk([plan], ego=77)

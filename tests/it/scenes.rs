@@ -1,0 +1,170 @@
+//! Joint futures, risk and occupancy of the program.
+
+use ddl_tests::own_tracks::{self, Row};
+use ddl_tests::place::{Place, json_lines};
+use serde_json::Value;
+
+/// Two side by side, one who comes towards them, and one far away; for 10 steps.
+fn rows() -> Vec<Row> {
+    let at = |t: i64| {
+        let x = 0.5 * t as f64;
+        [
+            (t, 1, x, 0.0),
+            (t, 2, x, 0.7),
+            (t, 3, 9.0 - x, 0.2),
+            (t, 4, 40.0, 40.0 + x),
+        ]
+    };
+    (0..10).flat_map(at).collect()
+}
+
+const PLANS: &str = "plan,t,x,y,radius\nthrough,0,9,1,0.3\nthrough,4.8,3,-1,0.3\naway,0,-20,-20,0.3\n";
+
+fn place() -> Place {
+    let place = Place::empty();
+    place.write_tracks("tracks.csv", &rows());
+    place.write("plans.csv", PLANS);
+    place.write("robot.csv", "t,x,y\n0,7,0.3\n4.8,7,0.3\n");
+    place
+}
+
+#[test]
+fn futures_are_of_the_scene_and_the_same_in_a_stream() {
+    let place = place();
+    let options = "--fps 2.5 --joint --threads 1 --format jsonl";
+    let of_file = place.ok(&format!("forecast tracks.csv {options}"));
+    let streamed = place.run_on(&own_tracks::csv(&rows()), &format!("forecast - {options}"));
+    assert!(streamed.succeeds() == of_file, "a stream has other futures");
+    let last = json_lines::<Value>(&of_file).pop().unwrap();
+    assert_eq!(last["groups"], serde_json::json!([[1, 2]]));
+    let futures = last["futures"].as_array().unwrap();
+    let weights = futures.iter().map(|future| future["weight"].as_f64().unwrap());
+    assert!(futures.len() == 20 && (weights.sum::<f64>() - 1.0).abs() < 1e-9);
+    let end = |future: &Value, i: usize| -> Vec<f64> {
+        let end = future["paths"][i]["positions"].as_array().unwrap().last().unwrap();
+        serde_json::from_value(end.clone()).unwrap()
+    };
+    let [a, b] = [0, 1].map(|i| end(&futures[0], i));
+    assert!(
+        (a[0] - b[0]).hypot(a[1] - b[1]) < 1.5,
+        "the likeliest future parts a group: {a:?} {b:?}"
+    );
+    let csv = place.ok("forecast tracks.csv --fps 2.5 --joint --last --certificate --region 0.9");
+    assert!(csv.starts_with("observed_until,pedestrian,future,weight,") && !csv.contains(",false,"));
+    // One pedestrian alone has its own hypotheses.
+    place.write_tracks(
+        "one.csv",
+        &rows().into_iter().filter(|row| row.1 == 4).collect::<Vec<_>>(),
+    );
+    let one = |joint: &str| place.ok(&format!("forecast one.csv --fps 2.5 --last{joint}"));
+    assert_eq!(one(" --joint").replace(",future,", ",hypothesis,"), one(""));
+}
+
+#[test]
+fn the_others_make_way_for_a_plan() {
+    let place = place();
+    let ends = |options: &str| -> f64 {
+        let lines = place.ok(&format!(
+            "forecast tracks.csv --fps 2.5 --joint --last --format jsonl {options}"
+        ));
+        let line: Value = json_lines(&lines).pop().unwrap();
+        let futures = line["futures"].as_array().unwrap();
+        let through = |future: &&Value| {
+            let path = future["paths"][0]["positions"].as_array().unwrap().iter();
+            path.into_iter()
+                .any(|at| (at[0].as_f64().unwrap() - 7.0).hypot(at[1].as_f64().unwrap() - 0.3) < 0.3)
+        };
+        futures
+            .iter()
+            .filter(through)
+            .map(|future| future["weight"].as_f64().unwrap())
+            .sum()
+    };
+    let (without, given) = (ends(""), ends("--plan robot.csv"));
+    assert!(given < 0.5 * without, "{given} of {without} walk through the robot");
+    let ego = place.ok("forecast tracks.csv --fps 2.5 --joint --last --plan robot.csv --ego 4");
+    assert_eq!(
+        ego.lines()
+            .filter(|line| line.starts_with("9,4,") && line.contains(",7.0,0.3,"))
+            .count(),
+        240
+    );
+}
+
+#[test]
+fn risk_is_high_where_people_walk() {
+    let place = place();
+    let risk = |options: &str| -> Vec<Value> {
+        json_lines(&place.ok(&format!(
+            "risk tracks.csv --fps 2.5 --last --plan plans.csv --format jsonl {options}"
+        )))
+    };
+    let [through, away] = risk("").try_into().unwrap();
+    let of = |line: &Value| line["risk"].as_f64().unwrap();
+    assert_eq!((&through["plan"], &away["plan"]), (&"through".into(), &"away".into()));
+    assert!(of(&through) > 0.2 && of(&away) < 1e-6, "{through} {away}");
+    assert!(of(&risk("--unseen")[0]) > of(&through) && of(&risk("--within 2")[0]) > of(&through));
+    let without = &risk("--ego 3")[0]["pedestrians"];
+    assert_eq!(without.as_array().unwrap().len(), 3);
+    assert!(risk("--nearest")[1]["nearest"].as_f64().unwrap() > 20.0);
+    let csv = place.ok("risk tracks.csv --fps 2.5 --last --plan robot.csv");
+    assert!(csv.starts_with("observed_until,plan,within,risk,pedestrian,pedestrian_risk,until_0.4,"));
+    let streamed = place.run_on(&own_tracks::csv(&rows()), "risk - --fps 2.5 --plan robot.csv");
+    assert_eq!(streamed.succeeds().lines().last(), csv.lines().last());
+}
+
+#[test]
+fn occupancy_has_the_formats_of_maps() {
+    let place = place();
+    let occupancy = "occupancy tracks.csv --fps 2.5 --last --cell 0.25 --every 1.2";
+    let grids: Vec<Value> = json_lines(&place.ok(&format!("{occupancy} --area=-2,-3,14,3")));
+    assert_eq!(grids.len(), 5);
+    assert_eq!(
+        (&grids[0]["info"]["width"], &grids[0]["info"]["height"]),
+        (&64.into(), &24.into())
+    );
+    assert_eq!(grids[0]["data"].as_array().unwrap().len(), 64 * 24);
+    place.ok(&format!("{occupancy} --folder grids"));
+    assert!(
+        place.read("grids/9.npy").starts_with(b"\x93NUMPY") && place.text("grids/9.yaml").contains("times: [0.0, 1.2")
+    );
+    place.ok(&format!("{occupancy} --folder grids --format pgm"));
+    assert!(
+        place.read("grids/9_4.80s.pgm").starts_with(b"P5\n")
+            && place.text("grids/9_4.80s.yaml").contains("9_4.80s.pgm")
+    );
+}
+
+#[test]
+fn wrong_plans_and_areas_are_named() {
+    let place = place();
+    let risk = "risk tracks.csv --fps 2.5 --plan";
+    for (name, plan, words) in [
+        ("no_y", "t,x\n0,1\n", "no column `y`"),
+        ("more", "t,x,y,z\n0,1,1,1\n", "unknown column `z`"),
+        ("empty", "t,x,y\n", "no rows"),
+        ("text", "t,x,y\n0,1,left\n", "line: 2"),
+        ("nan", "t,x,y\n0,NaN,1\n", "x is NaN"),
+        ("order", "t,x,y\n1,1,1\n0,1,1\n", "sort the rows by time"),
+        ("frames", "t,x,y\n100,1,1\n200,1,1\n", "in seconds from the moment"),
+        (
+            "torn",
+            "plan,t,x,y\na,0,1,1\nb,0,1,1\na,1,1,1\n",
+            "do not stand together",
+        ),
+    ] {
+        place.write(&format!("{name}.csv"), plan);
+        place.fails(&format!("{risk} {name}.csv"), &[name, words]);
+    }
+    place.fails("risk tracks.csv --fps 2.5 --plan none.csv", &["none.csv"]);
+    place.fails("risk tracks.csv --fps 2.5 --plan robot.csv --within -1", &["0 or more"]);
+    place.fails("forecast tracks.csv --fps 2.5 --joint --plan plans.csv", &["2 plans"]);
+    place.fails("occupancy tracks.csv --fps 2.5 --cell 0", &["size of a cell"]);
+    place.fails("occupancy tracks.csv --fps 2.5 --cell 0.0001", &["larger cells"]);
+    place.fails("occupancy tracks.csv --fps 2.5 --format npy", &["--folder"]);
+    place.all_refused(&[
+        "occupancy tracks.csv --fps 2.5 --area 1,2,3",
+        "forecast tracks.csv --fps 2.5 --plan robot.csv",
+        "forecast tracks.csv --fps 2.5 --joint --one",
+    ]);
+}
