@@ -163,8 +163,8 @@ fn wrong_plans_and_areas_are_named() {
     place.fails("occupancy tracks.csv --fps 2.5 --cell 0.0001", &["larger cells"]);
     place.fails("occupancy tracks.csv --fps 2.5 --format npy", &["--folder"]);
     place.all_refused(&[
-        "occupancy tracks.csv --fps 2.5 --area 1,2,3",
-        "forecast tracks.csv --fps 2.5 --plan robot.csv",
-        "forecast tracks.csv --fps 2.5 --joint --one",
+        "occupancy tracks.csv --fps 2.5 --area 1,2,3 => four numbers",
+        "forecast tracks.csv --fps 2.5 --plan robot.csv => --joint",
+        "forecast tracks.csv --fps 2.5 --joint --one => cannot be used with",
     ]);
 }

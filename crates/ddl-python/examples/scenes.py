@@ -164,9 +164,9 @@ def table_of_risk(parts: Sequence[Plans]) -> str:
     heads = "recording (model) | moments | plans | happened | predicted | ECE | by chance | Brier | unseen: predicted"
     more = "ECE | Brier | Gaussian: sigma | predicted | ECE | Brier | ratio of Brier"
     lines = [f"| {heads} | {more} |", "|---|" + "---:|" * 15]
-    rng = np.random.default_rng(0)
     for one in parts:
         happened, _, seen, unseen, gauss = one.rows.T
+        rng = np.random.default_rng(0)
         chance = np.mean([ece(seen, (rng.random(len(seen)) < seen).astype(float)) for _ in range(200)])
         briers = [((of - happened) ** 2).mean() for of in (seen, unseen, gauss)]
         of_plans = f"{one.title} | {one.moments} | {len(seen)} | {happened.mean():.3f} | {seen.mean():.3f}"
@@ -230,13 +230,14 @@ def errors_of(forecast: ddl.Forecast, future: Floats, some: Flags) -> Floats:
 
 
 def given(star: str, others: Sequence[str]) -> None:
-    """Each moment in which somebody has another one near counts with one such ego."""
+    """Every second moment counts, if somebody has another one near, with one such ego."""
     heads = [f"{name} {of}" for name in ("near", "all") for of in ("minADE", "minFDE", "mean ADE", "JADE", "JFDE")]
     print("# Errors of others with the true future of one given, without it, and the change\n")
     print(f"| recording (model) | moments | near | all | {' | '.join(heads)} |\n|---|{'---:|' * 13}", flush=True)
     for of in places(star, others, 2):
         rng = np.random.default_rng(0)
         forecaster = ddl.Forecaster(of.model)
+        of.moments = of.moments[::2]
         found: list[list[list[Floats]]] = [[[], []], [[], []]]  # near and all; without and with
         for moment, without in of.forecasts():
             now = moment.past[:, -1]
