@@ -10,7 +10,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// Steps that represent a path: 1.6, 3.2 and 4.8 s.
 const STEPS: [usize; 3] = [4, 8, 12];
-const MOST_ITERATIONS: usize = 10;
+const MOST_ITERATIONS: usize = 6;
 
 /// The cluster of each sample, `[S]`, 0 to `clusters` - 1.
 pub(crate) fn clusters(people: &[Hypotheses], chosen: &[Vec<u8>], clusters: usize) -> Vec<usize> {
@@ -78,10 +78,10 @@ fn distances(people: &[Hypotheses], chosen: &[Vec<u8>], centres: &[Centre]) -> V
         for hypothesis in 0..one.count() {
             let [x, y] = place(one, hypothesis);
             table.extend(centres.iter().map(|centre| {
-                let off = |place: &[f32; 3], centre: &[f32; 3]| {
-                    place.iter().zip(centre).map(|(a, b)| (a - b) * (a - b)).sum::<f32>()
-                };
-                off(&x, &centre[i][0]) + off(&y, &centre[i][1])
+                let [cx, cy] = &centre[i];
+                (0..STEPS.len())
+                    .map(|t| (x[t] - cx[t]) * (x[t] - cx[t]) + (y[t] - cy[t]) * (y[t] - cy[t]))
+                    .sum::<f32>()
             }));
         }
         for (sums, &hypothesis) in distances.chunks_exact_mut(centres.len()).zip(chosen) {
