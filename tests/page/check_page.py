@@ -14,6 +14,7 @@ import sys
 import tempfile
 import time
 
+from check_futures import check_futures
 from expected_tables import HEADLINES, Group, expected, spread
 from playwright.sync_api import sync_playwright
 
@@ -447,6 +448,10 @@ def main():
             print(f"player: {len(moments)} moments, numbers agree with moments.json")
         with Opened(browser, folder / "viewer.html") as opened:
             check_viewer(opened)
+            assert not opened.page.locator(".futures").is_visible(), "a slider of futures without joint futures"
+        with Opened(browser, folder / "joint.html") as opened:
+            conflicts = check_futures(opened, list(decoded(json.loads(embedded(opened, "moments-json")))))
+            print(f"joint futures: {conflicts} conflicts agree with the paths")
         with Opened(browser, path_of_page) as opened:
             check_theme(opened)
         with Opened(browser, path_of_page, NARROW) as opened:
@@ -454,7 +459,7 @@ def main():
         with Opened(browser, path_of_page, motion="reduce") as opened:
             check_focus(opened)
             check_reduced_motion(opened)
-        pages = {"page": path_of_page, "viewer": folder / "viewer.html"}
+        pages = {"page": path_of_page, "viewer": folder / "viewer.html", "joint": folder / "joint.html"}
         pages |= {page.stem: page for page in variants(path_of_page.read_text(), data, pathlib.Path(temporary))}
         for name, page in pages.items():
             for size, viewport in (("wide", WIDE), ("narrow", NARROW)):

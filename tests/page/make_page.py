@@ -1,7 +1,8 @@
 """Makes the pages that check_page.py opens: make_page.py FOLDER PROGRAM
 
 `ddl evaluate` scores a stand-in with six weighted goals on the simulated crowds, and `ddl report` joins the folds with
-invented training curves into FOLDER/report.html and its data. `ddl view` makes FOLDER/viewer.html of the sample.
+invented training curves into FOLDER/report.html and its data. `ddl view` makes FOLDER/viewer.html of the sample,
+and FOLDER/joint.html with its joint futures.
 """
 
 import json
@@ -98,6 +99,7 @@ def main():
                     results.append(run)
         ddl("report", *results, "--title", "A stand-in on simulated crowds", "--out", folder)
     ddl("view", SAMPLE, "--moments", "8", "--no-open", "--output", folder / "viewer.html")
+    ddl("view", SAMPLE, "--moments", "8", "--joint", "--no-open", "--output", folder / "joint.html")
 
 
 if __name__ == "__main__":

@@ -228,7 +228,13 @@ impl Model {
     }
 
     /// A page that plays moments of the recording, and text about doubtful positions.
-    fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<(String, Option<String>)> {
+    fn page(
+        &self,
+        py: Python<'_>,
+        recording: &Recording,
+        most: usize,
+        joint: bool,
+    ) -> PyResult<(String, Option<String>)> {
         let observed = WindowOptions::new(false, None, None)?;
         let ObservedWindows { windows, doubt } = recording.observed(py, observed)?;
         if windows.is_empty() {
@@ -242,8 +248,9 @@ impl Model {
             recording: &recording.tracks,
             windows: &windows,
             most: most.max(1),
+            joint,
         };
-        let options = ForecastOptions::new(&self.0, self.hypotheses(), false, false)?;
+        let options = ForecastOptions::new(&self.0, self.hypotheses(), false, joint)?;
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
         let name = recording.tracks.name();

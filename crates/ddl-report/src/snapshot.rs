@@ -32,6 +32,12 @@ pub struct ForecastSnapshot {
     pub frame_step: i64,
     /// The pedestrians of the window.
     pub pedestrians: Vec<SnapshotPedestrian>,
+    /// Whether hypothesis k of all pedestrians is future k of the scene, with one weight for all of them.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub joint: bool,
+    /// Who walks together: indices of pedestrians, in the order of the moment; empty if unknown.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<Vec<usize>>,
     /// The reasons to show the snapshot; empty for an evenly spread one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub picks: Vec<Highlight>,
@@ -188,6 +194,8 @@ impl ForecastSnapshot {
                 .enumerate()
                 .map(|(i, truth)| pedestrian(window, forecast, truth, i))
                 .collect(),
+            joint: false,
+            groups: Vec::new(),
             picks: Vec::new(),
         }
     }

@@ -16,6 +16,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 #[command(mut_arg("file", |file| file.required(true)))]
 #[command(after_help = "Examples:\n  ddl view tracks.csv\n  \
+                  ddl view tracks.csv --joint\n  \
                   ddl view camera.csv --fps 25 --homography H.txt --output lobby.html --no-open")]
 pub(crate) struct View {
     #[command(flatten)]
@@ -25,6 +26,9 @@ pub(crate) struct View {
     /// Moments to show, evenly spread over the recording
     #[arg(long, default_value_t = 60, value_parser = crate::command::at_least_one)]
     moments: usize,
+    /// Show joint futures of all pedestrians, one at a time: people who walk together stay together
+    #[arg(long)]
+    joint: bool,
     /// Page to write [default: the name of the tracks with -forecasts.html, in the current folder]
     #[arg(long, short)]
     output: Option<PathBuf>,
@@ -49,8 +53,13 @@ impl View {
             recording,
             windows: &observed.windows,
             most: self.moments,
+            joint: self.joint,
         };
-        let forecasts = model.forecast_all(&player.shown())?;
+        let forecasts = if self.joint {
+            model.forecast_scenes(&player.shown(), None)?
+        } else {
+            model.forecast_all(&player.shown())?
+        };
         let forecasts: Vec<&Forecast> = forecasts.iter().collect();
         let name = self.tracks.file().file_name().unwrap_or_default();
         let warning = observed.warning.as_ref().map(ToString::to_string);

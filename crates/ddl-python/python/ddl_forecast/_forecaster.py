@@ -245,14 +245,23 @@ class Forecaster:
         """Whether the model was trained on these tracks, under whatever name: then its errors on them are no test."""
         return self._core.was_trained_on(recording._core)
 
-    def show(self, recording: Recording, path: str | os.PathLike[str] | None = None, *, moments: int = 60) -> Page:
+    def show(
+        self,
+        recording: Recording,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        moments: int = 60,
+        joint: bool = False,
+    ) -> Page:
         """Write a page that plays the forecasts of a recording: observations, hypotheses and true paths.
+
+        With ``joint`` it steps through joint futures: hypothesis ``k`` of all pedestrians is future ``k``.
 
         The page is self-contained. Without ``path`` it is written to a temporary folder. In a notebook it is shown in
         place, and ``Page.open()`` opens it in a browser.
         """
         _tell_doubt(recording)
-        html, doubt = self._core.page(recording._core, moments)
+        html, doubt = self._core.page(recording._core, moments, joint)
         if doubt is not None:
             warnings.warn(f"{recording.name}: {doubt}", DoubtWarning, stacklevel=2)
         if path is None:

@@ -34,6 +34,16 @@ fn check_moment(moment: &ForecastSnapshot, truth: Truth) -> Result<(), String> {
     for (index, pedestrian) in moment.pedestrians.iter().enumerate() {
         check_pedestrian(index, pedestrian, truth)?;
     }
+    if moment.joint {
+        let futures = moment.pedestrians[0].hypotheses.len();
+        let differs = |pedestrian: &SnapshotPedestrian| pedestrian.hypotheses.len() != futures;
+        if moment.pedestrians.iter().any(differs) {
+            return Err("joint futures need the same number of hypotheses of all pedestrians".to_owned());
+        }
+    }
+    if let Some(absent) = moment.groups.iter().flatten().find(|&&member| member >= count) {
+        return Err(format!("a group names pedestrian {absent} of {count}, counted from 0"));
+    }
     for pick in &moment.picks {
         if let Some(absent) = pick.pedestrians.iter().find(|&&pedestrian| pedestrian >= count) {
             let show = pick.show;

@@ -13,6 +13,8 @@
 //! quality                           how well it was observed; absent where nothing was estimated
 //! ```
 //!
+//! `joint` and `groups` of a moment are absent where the snapshot has none.
+//!
 //! Positions of moments are whole millimetres, so the encoding is exact: `x / 1000` is the original number.
 
 use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position};
@@ -31,6 +33,10 @@ struct MomentData<'a> {
     frame_step: i64,
     picks: &'a [Highlight],
     pedestrians: Vec<PedestrianData<'a>>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    joint: bool,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    groups: &'a [Vec<usize>],
 }
 
 #[derive(Serialize)]
@@ -70,6 +76,8 @@ impl<'a> MomentData<'a> {
             frame_step: moment.frame_step,
             picks: &moment.picks,
             pedestrians: moment.pedestrians.iter().map(PedestrianData::of).collect(),
+            joint: moment.joint,
+            groups: &moment.groups,
         }
     }
 }

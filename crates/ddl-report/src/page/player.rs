@@ -12,16 +12,21 @@ const STYLE: &str = include_str!("style.css");
 const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; \
     base-uri 'none'; form-action 'none'";
 /// Scripts of the player, run in this order inside one function.
-pub(super) const PLAYER_SCRIPTS: [&str; 12] = [
+pub(super) const PLAYER_SCRIPTS: [&str; 17] = [
     include_str!("script/theme.js"),
     include_str!("script/print.js"),
     include_str!("script/moments.js"),
     include_str!("script/metrics.js"),
+    include_str!("script/pedestrian_words.js"),
+    include_str!("script/futures.js"),
     include_str!("script/palette.js"),
     include_str!("script/view.js"),
     include_str!("script/scene.js"),
+    include_str!("script/futures_scene.js"),
+    include_str!("script/pointer.js"),
     include_str!("script/phi_chart.js"),
     include_str!("script/hypothesis_list.js"),
+    include_str!("script/futures_control.js"),
     include_str!("script/clock.js"),
     include_str!("script/player.js"),
     include_str!("script/keys.js"),

@@ -8,7 +8,7 @@ use ddl_report::{
     page::{Page, Viewer},
 };
 use proptest::prelude::*;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 /// Pedestrians side by side, each with a fan of hypotheses, rounded like a recording.
 fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (Window, Forecast) {
@@ -357,8 +357,25 @@ fn a_viewer_plays_what_is_not_over_yet() {
         assert!(html.contains(words), "{words}");
     }
     assert!(!html.contains("report-json"));
+    let data = embedded(&html, "moments-json");
+    assert!(!data.contains("joint") && !data.contains("groups"));
+
+    under_way.joint = true;
+    under_way.groups = vec![vec![0, 1]];
+    let html = view(&under_way).unwrap();
+    let data: Value = serde_json::from_str(embedded(&html, "moments-json")).unwrap();
+    assert_eq!(
+        [&data[0]["joint"], &data[0]["groups"]],
+        [&json!(true), &json!([[0, 1]])]
+    );
+    under_way.groups = vec![vec![0, 2]];
+    assert!(view(&under_way).is_err());
+    under_way.groups.clear();
+    under_way.pedestrians[1].hypotheses.pop();
+    assert!(view(&under_way).is_err());
 
     let thirteen = vec![[0.0; 2]; 13];
+    under_way.joint = false;
     under_way.pedestrians[1].truth = thirteen;
     assert!(view(&under_way).is_err());
 }

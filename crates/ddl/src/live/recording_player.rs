@@ -20,6 +20,8 @@ pub struct RecordingPlayer<'a> {
     pub windows: &'a [Window],
     /// Largest number of windows to play.
     pub most: usize,
+    /// Whether the forecasts are [joint futures](Ddl::forecast_scenes): the page then steps through them.
+    pub joint: bool,
 }
 
 impl RecordingPlayer<'_> {
@@ -48,13 +50,21 @@ impl RecordingPlayer<'_> {
             let seen = futures.of(window);
             let mut moment = ForecastSnapshot::under_way(model.name(), window, forecast, &seen)?;
             moment.frame = frame(window.frames()[OBSERVED - 1]);
+            if self.joint {
+                moment.joint = true;
+                moment.groups = ddl_scene::groups(window);
+            }
             Ok(moment)
         });
         let moments: Vec<ForecastSnapshot> = moments.collect::<Result<_, EvaluationError>>()?;
         let warning = warning.map(|warning| format!("Doubtful: {warning} "));
+        let paths = if self.joint {
+            "its true path as far as it was observed, and joint futures of all for the next 4.8 s"
+        } else {
+            "its forecast for the next 4.8 s, and its true path as far as it was observed"
+        };
         let lead = format!(
-            "{}{} of {} moments of {name}: the observed path of each pedestrian, its forecast for the next 4.8 s, and \
-             its true path as far as it was observed.",
+            "{}{} of {} moments of {name}: the observed path of each pedestrian, {paths}.",
             warning.unwrap_or_default(),
             shown.len(),
             self.windows.len()

@@ -14,6 +14,8 @@ function bindKeys(player) {
     End: () => player.clock.set(FRAMES - 1),
     p: () => player.nextMoment(-1),
     n: () => player.nextMoment(1),
+    d: () => player.nextFuture(-1),
+    f: () => player.nextFuture(1),
     r: () => player.nextRecording(),
     w: () => player.sortByWeight(),
   };

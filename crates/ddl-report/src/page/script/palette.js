@@ -1,6 +1,6 @@
 // The colours of the page for a canvas, which does not support CSS variables.
 
-const PALETTE_NAMES = ["ink", "ink-2", "paper", "panel", "rule", "rule-soft", "other", "accent", "accent-deep", "accent-soft", "truth"];
+const PALETTE_NAMES = ["ink", "ink-2", "paper", "panel", "rule", "rule-soft", "other", "accent", "accent-deep", "accent-soft", "truth", "third", "warn-rule"];
 
 // A probe element resolves the variables of the theme.
 function readPalette() {

@@ -16,12 +16,18 @@ function makePlayer(moments) {
     const name = recordingName(moment);
     if (!recordings.includes(name)) recordings.push(name);
   }
+  // Joint futures are stepped through, so that a hypothesis is always chosen: the same one of everybody.
+  const joint = moments.every((moment) => moment.joint);
+  byId("player").classList.toggle("joint", joint);
   const state = {
+    joint,
     moment: 0,
     pedestrian: 0,
     hypothesis: null,
+    links: [],
+    conflicts: [],
     time: OBSERVED - 1,
-    show: { truth: true, hypotheses: true, goals: true, region: true, others: true, everything: false, whole: false },
+    show: { truth: true, hypotheses: !joint, goals: true, region: !joint, others: true, everything: false, whole: false },
   };
   let palette = readPalette();
   let size = { width: 0, height: 0, ratio: 1 };
@@ -29,6 +35,7 @@ function makePlayer(moments) {
   let waiting = false;
   const chart = makePhiChart(byId("phi"));
   const list = makeHypothesisList(byId("hypotheses"), chooseHypothesis);
+  const futures = makeFuturesControl(followHypothesis, (on) => ["hypotheses", "everything"].forEach((name) => setShow(name, on)));
   const clock = makeClock(showTime, (playing) => {
     byId("play").setAttribute("aria-pressed", playing);
     // A screen reader gets the time after a stop, not every frame.
@@ -42,23 +49,6 @@ function makePlayer(moments) {
     return `${moment.recording}${fold}${who}`;
   }
 
-  // How well the pedestrian was observed.
-  function qualityWords(who) {
-    const { unseen, age, deviation } = who.quality;
-    const parts = [];
-    if (unseen > 0) parts.push(`${unseen} of its ${OBSERVED} observed steps lie before its first observation`);
-    if (age >= 0.05) parts.push(`last seen ${age.toFixed(1)} s before`);
-    if (deviation >= 0.01) parts.push(`position known to ${(100 * deviation).toFixed(0)} cm`);
-    return parts.length === 0 ? "" : `Observation: ${parts.join(", ")}. `;
-  }
-
-  // Similarity of the observed motion to the forecaster's training data.
-  function familiarityWords(who) {
-    if (who.familiarity === null) return "";
-    const share = who.familiarity < 0.01 ? "less than 1" : Math.round(100 * who.familiarity);
-    return `Familiarity ${who.familiarity.toFixed(2)}: ${share} % of training motions are as unusual. `;
-  }
-
   function momentAt(at) {
     if (!decoded.has(at)) decoded.set(at, decodeMoment(moments[at]));
     return decoded.get(at);
@@ -66,6 +56,8 @@ function makePlayer(moments) {
 
   const current = () => momentAt(state.moment);
   const pedestrian = () => current().pedestrians[state.pedestrian];
+  // In place of a choice: each pedestrian's representative hypothesis, or the likeliest future.
+  const unchosen = () => (joint ? likeliestFuture(current()) : null);
   const chosenHypothesis = () => state.hypothesis ?? pedestrian().representative;
 
   function fillSelect(select, options, value) {
@@ -99,7 +91,7 @@ function makePlayer(moments) {
     canvas.width = Math.round(box.width * ratio);
     canvas.height = Math.round(box.height * ratio);
     const places = [];
-    if (state.show.whole) current().pedestrians.forEach((who, at) => places.push(...placesOf(who, at === state.pedestrian)));
+    if (state.show.whole) current().pedestrians.forEach((who, at) => places.push(...placesOf(who, joint || at === state.pedestrian)));
     else places.push(...placesOf(pedestrian(), true));
     view = viewOf(places, size.width, size.height, state.show.whole ? 1 : CLOSE_UP_ROOM);
     redraw();
@@ -157,25 +149,35 @@ function makePlayer(moments) {
 
   function chooseHypothesis(index) {
     // A second click selects the representative hypothesis.
-    state.hypothesis = state.hypothesis === index ? null : index;
+    followHypothesis(state.hypothesis === index ? unchosen() : index);
+  }
+
+  function followHypothesis(index) {
+    state.hypothesis = index;
     const chosen = chosenHypothesis();
+    if (joint) showFuture();
     list.mark(chosen);
     chart.draw(pedestrian(), chosen);
     showVerdict();
     showTime(state.time);
   }
 
+  function showFuture() {
+    state.conflicts = conflictsOf(current(), state.hypothesis);
+    futures.show(current(), state.hypothesis, state.conflicts);
+  }
+
   function showVerdict() {
     const who = pedestrian();
     const chosen = chosenHypothesis();
-    const stands = chosen === who.representative && who.hypotheses.length > 1 ? ", the representative one" : "";
-    byId("certificate-words").textContent = `Hypothesis ${chosen + 1}${stands}: ${verdictWords(who, who.hypotheses[chosen])}.`;
+    const stands = !joint && chosen === who.representative && who.hypotheses.length > 1 ? ", the representative one" : "";
+    byId("certificate-words").textContent = `${joint ? "Future" : "Hypothesis"} ${chosen + 1}${stands}: ${verdictWords(who, who.hypotheses[chosen])}.`;
   }
 
   function choosePedestrian(at) {
     const count = current().pedestrians.length;
     state.pedestrian = (at + count) % count;
-    state.hypothesis = null;
+    if (!joint) state.hypothesis = null;
     showPedestrian();
   }
 
@@ -194,6 +196,11 @@ function makePlayer(moments) {
       state.moment,
     );
     fillSelect(byId("choose-pedestrian"), moment.pedestrians.map((w, i) => [i, `pedestrian ${w.pedestrian}`]), 0);
+    state.hypothesis = unchosen();
+    if (joint) {
+      state.links = groupLinks(moment);
+      showFuture();
+    }
     const picked = moment.picks[0]?.pedestrians[0] ?? 0;
     choosePedestrian(who ?? picked);
   }
@@ -203,21 +210,6 @@ function makePlayer(moments) {
     byId(`show-${name}`).checked = on;
     if (name === "whole") fit();
     redraw();
-  }
-
-  // The pedestrian whose path, past and forecast, is nearest the pointer.
-  function nearestPedestrian(event) {
-    const box = canvas.getBoundingClientRect();
-    const at = [event.clientX - box.left, event.clientY - box.top];
-    let best = null;
-    current().pedestrians.forEach((who, index) => {
-      const ahead = shownAhead(who, state.show, state.time);
-      const here = view.px(placeAt(who.observed, ahead, state.time));
-      const others = [...who.observed, ...ahead].map(view.px);
-      const reach = Math.min(Math.hypot(here[0] - at[0], here[1] - at[1]) - 8, ...others.map((p) => Math.hypot(p[0] - at[0], p[1] - at[1])));
-      if (reach < 22 && (!best || reach < best.reach)) best = { index, reach };
-    });
-    return best?.index;
   }
 
   byId("play").addEventListener("click", clock.toggle);
@@ -230,11 +222,13 @@ function makePlayer(moments) {
   byId("choose-recording").addEventListener("change", (event) => chooseMoment(momentsOf(event.target.value)[0]));
   byId("choose-moment").addEventListener("change", (event) => chooseMoment(Number(event.target.value)));
   byId("choose-pedestrian").addEventListener("change", (event) => choosePedestrian(Number(event.target.value)));
-  for (const name of Object.keys(state.show)) {
+  for (const [name, on] of Object.entries(state.show)) {
+    byId(`show-${name}`).checked = on;
     byId(`show-${name}`).addEventListener("change", (event) => setShow(name, event.target.checked));
   }
   canvas.addEventListener("click", (event) => {
-    const found = nearestPedestrian(event);
+    const box = canvas.getBoundingClientRect();
+    const found = nearestPedestrian([event.clientX - box.left, event.clientY - box.top], view, current(), state);
     if (found !== undefined) choosePedestrian(found);
     stage.focus({ preventScroll: true });
   });
@@ -275,7 +269,11 @@ function makePlayer(moments) {
       const at = recordings.indexOf(recordingName(current()));
       chooseMoment(momentsOf(recordings[(at + 1) % recordings.length])[0]);
     },
-    toggle: (name) => setShow(name, !state.show[name]),
+    nextFuture: (by) => {
+      const count = pedestrian().hypotheses.length;
+      if (joint) followHypothesis((state.hypothesis + by + count) % count);
+    },
+    toggle: (name) => (joint && ["hypotheses", "everything"].includes(name) ? futures.toggleAll() : setShow(name, !state.show[name])),
     sortByWeight: () => list.sort("weight"),
     stage,
     // For measurements: the time of one drawing with all hypotheses, in milliseconds.

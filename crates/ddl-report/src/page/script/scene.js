@@ -114,8 +114,9 @@ function trail(observed, ahead, from, time) {
   return places;
 }
 
-// The path of a pedestrian: the true one as far as it was observed, then the forecast.
-function shownAhead(pedestrian, show, time) {
+// The path of a pedestrian: the true one as far as it was observed, then the forecast; of joint futures the chosen one.
+function shownAhead(pedestrian, { joint, hypothesis, show, time }) {
+  if (joint) return pedestrian.hypotheses[hypothesis].path;
   return show.truth && time <= knownUntil(pedestrian) ? pedestrian.truth : pedestrian.hypotheses[pedestrian.representative].path;
 }
 
@@ -134,7 +135,7 @@ function drawOther(context, view, pedestrian, state, palette) {
     const { path } = pedestrian.hypotheses[pedestrian.representative];
     stroke(context, toPixels([pedestrian.observed[now], ...path]), palette.accent, 1, 0.4, [3, 3]);
   }
-  const ahead = shownAhead(pedestrian, show, time);
+  const ahead = shownAhead(pedestrian, state);
   dot(context, view.px(placeAt(pedestrian.observed, ahead, time)), 3.4, palette.other, 1, palette.panel);
 }
 
@@ -225,7 +226,7 @@ function drawNumbers(context, view, moment, state, palette) {
   for (const at of order) {
     const pedestrian = moment.pedestrians[at];
     if (at !== state.pedestrian && !state.show.others) continue;
-    const ahead = shownAhead(pedestrian, state.show, state.time);
+    const ahead = shownAhead(pedestrian, state);
     const [x, y] = view.px(placeAt(pedestrian.observed, ahead, state.time));
     const box = [x + 6, y - 18, x + 12 + 7 * String(pedestrian.pedestrian).length, y - 4];
     if (taken.some((other) => box[0] < other[2] && other[0] < box[2] && box[1] < other[3] && other[1] < box[3])) continue;
@@ -243,12 +244,18 @@ function drawScene(context, view, size, moment, state, palette) {
   context.lineJoin = "round";
   context.lineCap = "butt";
   grid(context, view, width, height, palette);
+  const drawThis = state.joint ? drawInFuture : drawOther;
   if (state.show.others) {
     moment.pedestrians.forEach((pedestrian, at) => {
-      if (at !== state.pedestrian) drawOther(context, view, pedestrian, state, palette);
+      if (at !== state.pedestrian) drawThis(context, view, pedestrian, state, palette);
     });
   }
+  if (state.joint && state.show.others) {
+    drawGroups(context, view, moment, state, palette);
+    drawPlaces(context, view, moment, state, palette);
+  }
   drawChosen(context, view, moment.pedestrians[state.pedestrian], state, palette);
+  if (state.joint) drawConflicts(context, view, moment, state, palette);
   drawNumbers(context, view, moment, state, palette);
   context.globalAlpha = 1;
 }
