@@ -129,9 +129,11 @@ impl GoalEstimatorParams {
 mod tests {
     use super::{GoalEstimatorParams, MOST_CLUSTERS, RetrievalFrame};
 
+    type Fault = (fn(&mut GoalEstimatorParams), &'static str);
+
     #[test]
     fn each_invalid_value_is_refused() {
-        let cases: [(fn(&mut GoalEstimatorParams), &str); 9] = [
+        let cases: [Fault; 9] = [
             (|p| p.experts = 0, "experts is 0"),
             (|p| p.clusters = 0, "clusters is 0"),
             (|p| p.clusters = MOST_CLUSTERS + 1, "clusters is 1001, of at most 1000"),

@@ -1,6 +1,6 @@
 //! Goals from given endpoints.
 
-use ddl_goal::{GoalError, GoalSet, HeadingFrame};
+use ddl_goal::{GoalSet, HeadingFrame};
 use proptest::prelude::*;
 
 fn frame() -> HeadingFrame {
@@ -61,12 +61,10 @@ fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
 
 #[test]
 fn invalid_endpoints_are_reported() {
-    let error_of =
-        |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::from_endpoints(&frame(), ends, weights, clusters)
-        {
-            Err(error @ GoalError::Ends { .. }) => error.to_string(),
-            other => panic!("{other:?}"),
-        };
+    let error_of = |ends: &[[f64; 2]], weights: &[f64], clusters| {
+        let refused = GoalSet::from_endpoints(&frame(), ends, weights, clusters);
+        refused.unwrap_err().to_string()
+    };
     let end = [[1.0, 1.0]];
     assert!(error_of(&[], &[], 3).contains("0 endpoints"));
     assert!(error_of(&end, &[0.5, 0.5], 3).contains("1 endpoints with 2 weights"));
