@@ -58,7 +58,7 @@ fn bits(forecast: &Forecast) -> Vec<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::baseline::SocialForce;
+    use crate::baseline::{ConstantAcceleration, SocialForce};
     use crate::fixture::{forecast, walk, walking, window};
 
     struct Peeks {
@@ -94,5 +94,6 @@ mod tests {
         let frame = OBSERVED - 1;
         assert_eq!(find(&Peeks { frame }, &window).unwrap(), None);
         assert_eq!(find(&SocialForce, &window).unwrap(), None);
+        assert_eq!(find(&ConstantAcceleration::Bounded, &window).unwrap(), None);
     }
 }

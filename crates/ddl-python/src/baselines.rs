@@ -4,8 +4,8 @@ use crate::errors::of_any;
 use crate::forecasts::{EmptyFields, PlainOrCertified, parts};
 use crate::observed::{Observed, completeness};
 use ddl::data::Window;
-use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, GoalSource, SocialForce, StraightLine};
-use ddl::{ForecastError, Forecaster, WeightedGoals};
+use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine};
+use ddl::{Forecaster, WeightedGoals};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -51,7 +51,7 @@ pub(crate) fn baseline<'py>(
 }
 
 /// The goals `(n, k, 2)` of the pedestrians in the window, equally likely.
-fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResult<RowGoals> {
+fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResult<Vec<WeightedGoals>> {
     let goals = goals.ok_or_else(|| PyValueError::new_err("goals are missing"))?;
     let shape = goals.shape();
     if shape[0] != scene.rows.len() || shape[2] != 2 || shape[1] == 0 {
@@ -70,18 +70,5 @@ fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResul
         }
     }
     let goals: Option<Vec<WeightedGoals>> = of_window.into_iter().collect();
-    let goals = goals.ok_or_else(|| PyValueError::new_err("neighbours have no goals; leave them out"))?;
-    Ok(RowGoals(goals))
-}
-
-struct RowGoals(Vec<WeightedGoals>);
-
-impl GoalSource for RowGoals {
-    fn name(&self) -> String {
-        "the given goals".to_owned()
-    }
-
-    fn goals(&self, _window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-        Ok(self.0.clone())
-    }
+    goals.ok_or_else(|| PyValueError::new_err("neighbours have no goals; leave them out"))
 }

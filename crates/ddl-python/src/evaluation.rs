@@ -56,10 +56,7 @@ pub(crate) fn windows<'py>(
     recording: Option<&Recording>,
 ) -> PyResult<Vec<Bound<'py, PyDict>>> {
     let convention: Convention = parsed(convention)?;
-    let rule: WindowRule = match rule {
-        Some(rule) => parsed(rule)?,
-        None => convention.headline_rule(),
-    };
+    let rule: WindowRule = rule.map_or(Ok(convention.headline_rule()), parsed)?;
     let windows = if let Some(recording) = recording {
         recording.tracks.windows(rule)
     } else {
@@ -126,10 +123,7 @@ impl TestSet {
         rule: Option<&str>,
     ) -> PyResult<Self> {
         let convention: Convention = parsed(convention)?;
-        let rule: WindowRule = match rule {
-            Some(rule) => parsed(rule)?,
-            None => convention.headline_rule(),
-        };
+        let rule: WindowRule = rule.map_or(Ok(convention.headline_rule()), parsed)?;
         let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
         let fold_by_name = dataset.fold(fold).map_err(raised)?;
         let recordings = fold_by_name

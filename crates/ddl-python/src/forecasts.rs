@@ -121,7 +121,8 @@ fn spread_and_regions(
         None => None,
     };
     dict.set_item("spread", spread)?;
-    dict.set_item("region_table", table.map(json).transpose()?)
+    let table = table.map(serde_json::to_string).transpose();
+    dict.set_item("region_table", table.map_err(of_any)?)
 }
 
 /// The observation, and how well it is known.
@@ -207,10 +208,6 @@ fn certificates<'py>(
     dict.set_item("min_step_margin", array(py, margins, [n, k])?)?;
     dict.set_item("largest_angle", array(py, angles, [n, k])?)?;
     Ok(dict)
-}
-
-fn json(table: &RegionTable) -> PyResult<String> {
-    serde_json::to_string(table).map_err(of_any)
 }
 
 /// Radii `(n, k, 12)` of the discs around the hypotheses in the region of a level; NaN where there is no disc.

@@ -11,19 +11,13 @@ use std::sync::Arc;
 
 /// A device that has been opened and is available.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Device(Opened);
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Opened {
+pub(crate) enum Device {
     Cpu,
     #[cfg(feature = "torch")]
     Torch(ddl_star::ComputeDevice),
 }
 
 impl Device {
-    /// The CPU.
-    pub(crate) const CPU: Self = Self(Opened::Cpu);
-
     /// Opens the device.
     ///
     /// # Errors
@@ -33,14 +27,14 @@ impl Device {
         if choice != DeviceChoice::Cpu {
             let device = ddl_star::ComputeDevice::open(choice)?;
             if device.name() == "cuda" {
-                return Ok(Self(Opened::Torch(device)));
+                return Ok(Self::Torch(device));
             }
         }
         #[cfg(not(feature = "torch"))]
         if choice == DeviceChoice::Cuda {
             return Err(DdlError::WithoutLibtorch { what: "CUDA" });
         }
-        Ok(Self::CPU)
+        Ok(Self::Cpu)
     }
 
     /// libtorch on the CPU: the reference for the kernels.
@@ -50,34 +44,34 @@ impl Device {
     #[cfg(feature = "torch")]
     pub(crate) fn libtorch_on_cpu() -> Result<Self, DdlError> {
         let device = ddl_star::ComputeDevice::open(DeviceChoice::Cpu)?;
-        Ok(Self(Opened::Torch(device)))
+        Ok(Self::Torch(device))
     }
 
     /// "cpu" or "cuda", as reports print it.
     #[must_use]
     pub(crate) fn name(self) -> &'static str {
-        match self.0 {
-            Opened::Cpu => "cpu",
+        match self {
+            Self::Cpu => "cpu",
             #[cfg(feature = "torch")]
-            Opened::Torch(device) => device.name(),
+            Self::Torch(device) => device.name(),
         }
     }
 
     pub(crate) fn words(self) -> &'static str {
-        match self.0 {
-            Opened::Cpu => "cpu",
+        match self {
+            Self::Cpu => "cpu",
             #[cfg(feature = "torch")]
-            Opened::Torch(device) if device.name() == "cpu" => "cpu, libtorch",
+            Self::Torch(device) if device.name() == "cpu" => "cpu, libtorch",
             #[cfg(feature = "torch")]
-            Opened::Torch(_) => "cuda",
+            Self::Torch(_) => "cuda",
         }
     }
 
     #[cfg(feature = "torch")]
     pub(crate) fn torch(self) -> Result<ddl_star::ComputeDevice, DdlError> {
-        match self.0 {
-            Opened::Cpu => Ok(ddl_star::ComputeDevice::open(DeviceChoice::Cpu)?),
-            Opened::Torch(device) => Ok(device),
+        match self {
+            Self::Cpu => Ok(ddl_star::ComputeDevice::open(DeviceChoice::Cpu)?),
+            Self::Torch(device) => Ok(device),
         }
     }
 
@@ -86,10 +80,10 @@ impl Device {
         config: &StarConfig,
         read: impl FnOnce(&Arc<Layout>) -> Result<Weights, NetworkError>,
     ) -> Result<Box<dyn ForecastWindows>, DdlError> {
-        match self.0 {
-            Opened::Cpu => Ok(Box::new(MotionNetwork::reading(config.clone(), read)?)),
+        match self {
+            Self::Cpu => Ok(Box::new(MotionNetwork::reading(config.clone(), read)?)),
             #[cfg(feature = "torch")]
-            Opened::Torch(device) => {
+            Self::Torch(device) => {
                 let network = ddl_star::TorchNetwork::new(config.clone(), 0, device)?;
                 let weights = read(network.parameters().layout())?;
                 network.parameters().set(&weights)?;
@@ -103,10 +97,10 @@ impl Device {
         config: &ProposalConfig,
         read: impl FnOnce(&Arc<Layout>) -> Result<Weights, NetworkError>,
     ) -> Result<Box<dyn ProposeEndpoints>, DdlError> {
-        match self.0 {
-            Opened::Cpu => Ok(Box::new(ProposalNetwork::reading(config.clone(), read)?)),
+        match self {
+            Self::Cpu => Ok(Box::new(ProposalNetwork::reading(config.clone(), read)?)),
             #[cfg(feature = "torch")]
-            Opened::Torch(device) => {
+            Self::Torch(device) => {
                 let network = ddl_star::TorchProposals::new(config.clone(), 0, device)?;
                 let weights = read(network.parameters().layout())?;
                 network.parameters().set(&weights)?;

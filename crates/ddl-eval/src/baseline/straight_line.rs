@@ -14,6 +14,17 @@ pub trait GoalSource {
     fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError>;
 }
 
+/// Known goals of the pedestrians of one window.
+impl GoalSource for Vec<WeightedGoals> {
+    fn name(&self) -> String {
+        "the given goals".to_owned()
+    }
+
+    fn goals(&self, _window: &Window) -> Result<Self, ForecastError> {
+        Ok(self.clone())
+    }
+}
+
 /// The last true position: an oracle, for the protocol `published` only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TrueEndpoint;
@@ -103,24 +114,11 @@ mod tests {
     use crate::fixture::window;
     use crate::protocol::Protocol;
 
-    struct Corners(usize);
-    impl GoalSource for Corners {
-        fn name(&self) -> String {
-            "two corners".to_owned()
-        }
-        fn goals(&self, _: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-            let corners = vec![[12.0, 0.0], [0.0, -24.0]];
-            Ok(vec![WeightedGoals::new(corners, vec![0.25, 0.75])?; self.0])
-        }
-    }
-
     #[test]
     fn one_line_a_goal_with_its_weight() {
         let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
-        let sets = Corners(1).goals(&windows[0]).unwrap();
-        assert_eq!(sets[0].goals(), [[12.0, 0.0], [0.0, -24.0]]);
-        assert_eq!(sets[0].weights(), [0.25, 0.75]);
-        let straight = StraightLine(Corners(1));
+        let corners = WeightedGoals::new(vec![[12.0, 0.0], [0.0, -24.0]], vec![0.25, 0.75]);
+        let straight = StraightLine(vec![corners.unwrap()]);
         let forecast = straight.forecast(&windows[0]).unwrap();
         assert_eq!(forecast.hypothesis(0, 0)[2], [3.0, 0.0]);
         assert_eq!(forecast.hypothesis(0, 1)[11], [0.0, -24.0]);
@@ -128,8 +126,8 @@ mod tests {
         assert_eq!(forecast.most_likely(0), 1);
         let single = Protocol::Single.forecast(&straight, &windows).unwrap();
         assert_eq!(single, [forecast.single()]);
-        let error = StraightLine(Corners(0)).forecast(&windows[0]).unwrap_err();
-        let expected = "goal source `two corners`: 0 goal sets for 1 pedestrians";
+        let error = StraightLine(Vec::new()).forecast(&windows[0]).unwrap_err();
+        let expected = "goal source `the given goals`: 0 goal sets for 1 pedestrians";
         assert_eq!(error.to_string(), expected);
     }
 

@@ -1,7 +1,5 @@
 //! Forecasts in the order of the windows.
 
-use std::fmt::Write as _;
-
 use ddl_core::{Forecast, HORIZON, Position, Window};
 use sha2::{Digest as _, Sha256};
 
@@ -69,11 +67,8 @@ impl Matched {
                 hash.update(pedestrian.0.to_le_bytes());
             }
         }
-        let digest = hash.finalize();
-        digest[..4].iter().fold(String::new(), |mut text, byte| {
-            let _ = write!(text, "{byte:02x}");
-            text
-        })
+        let [a, b, c, d, ..]: [u8; 32] = hash.finalize().into();
+        format!("{:08x}", u32::from_be_bytes([a, b, c, d]))
     }
 }
 

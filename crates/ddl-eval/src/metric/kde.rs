@@ -104,18 +104,3 @@ pub fn kde_nll(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
         .sum();
     Some(-sum / truth.len() as f64)
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn all_weight_on_one_point_is_a_bell_around_it() {
-        let (points, weights) = ([[0.0, 0.0], [5.0, 5.0]], [1.0, 0.0]);
-        let top = -(std::f64::consts::TAU * 1e-4).ln();
-        for (y, expected) in [(0.0, top), (0.02, top - 2.0)] {
-            let density = log_density(&points, &weights, [0.0, y]);
-            assert!((density - expected).abs() < 1e-12, "{density}");
-        }
-    }
-}

@@ -112,32 +112,3 @@ pub(crate) fn rollouts(scene: &ScoredWindow<'_>) -> Vec<RolloutStability> {
         })
         .collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-
-    /// Descent of Phi, distance at the end and largest turn of five rollouts. The first goes straight to the goal. The
-    /// second passes a goal at (0.6, 0) by 0.4 m (still nearer: from 0.6 to 0.4), then goes on by 0.5 m, at 180 degrees
-    /// to it. The third goes along a side of a 3-4-5 triangle, at acos(0.6) to the goal. The fourth stands at the goal,
-    /// where no step has a direction, and the fifth stands elsewhere.
-    #[test]
-    fn rollouts_by_hand() {
-        let ahead: Vec<_> = (1..=12).map(|t| [f64::from(t) / 4.0, 0.0]).collect();
-        let angle = 0.6_f64.acos().to_degrees();
-        for (path, goal, decreasing, end_distance, largest_turn) in [
-            (&ahead[..], [3.0, 0.0], true, 0.0, 0.0),
-            (&[[1.0, 0.0], [1.5, 0.0]], [0.6, 0.0], false, 0.9, 180.0),
-            (&[[3.0, 4.0]], [9.0, 0.0], true, 52.0_f64.sqrt(), angle),
-            (&[[0.0, 0.0]; 12], [0.0, 0.0], true, 0.0, 0.0),
-            (&[[0.0, 0.0]; 12], [1.0, 0.0], false, 1.0, 0.0),
-        ] {
-            let judged = RolloutStability::of([0.0, 0.0], path, goal);
-            assert_eq!(judged.decreasing, decreasing, "{goal:?}");
-            assert_relative_eq!(judged.end_distance, end_distance, epsilon = 1e-12);
-            assert_relative_eq!(judged.largest_turn, largest_turn, epsilon = 1e-9);
-        }
-    }
-}

@@ -34,7 +34,7 @@ pub fn tensors_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
 ///
 /// # Errors
 /// [`NetworkError::Checkpoint`] if they differ. Files of earlier versions have no digest and are accepted.
-pub fn check_digest(file: &SafeTensors<'_>, expected: Option<&str>, path: &Path) -> Result<(), NetworkError> {
+pub(super) fn check_digest(file: &SafeTensors<'_>, expected: Option<&str>, path: &Path) -> Result<(), NetworkError> {
     let tensors = file.tensors();
     let digest = || tensors_digest(tensors.iter().map(|(name, view)| (name.as_str(), view.clone())));
     match expected {

@@ -169,15 +169,15 @@ pub fn read_tensors(path: &Path, most_bytes: u64, origin: &Origin) -> Result<Vec
     let bad = |problem: String| NetworkError::checkpoint(path, problem);
     // A file that is too large is refused before it is read and before memory is allocated.
     let size = std::fs::metadata(path).map_err(io)?.len();
-    if size > most_bytes + HEADER_BYTES {
+    let most = most_bytes.saturating_add(HEADER_BYTES);
+    if size > most {
         return Err(bad(format!(
-            "is {size} bytes long, but a checkpoint of this network has at most {most_bytes} bytes"
+            "is {size} bytes long, but its numbers have at most {most_bytes} bytes"
         )));
     }
     let mut bytes = Vec::new();
     // A special file may hold more than the size it reports.
     let file = std::fs::File::open(path).map_err(io)?;
-    let most = most_bytes + HEADER_BYTES;
     file.take(most).read_to_end(&mut bytes).map_err(io)?;
     let broken = |error: safetensors::SafeTensorError| {
         bad(format!(

@@ -2,7 +2,7 @@
 
 use super::scenes::{Question, WINDOWS, configs, with_threads};
 use ddl_data::Window;
-use ddl_network::{MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout};
+use ddl_network::{MotionNetwork, Noise, StepRule, WindowRollout};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -44,25 +44,6 @@ proptest! {
             let alone = with_threads(1, || question.ask(&network, &[window]));
             prop_assert!(together.positions.as_flattened().iter().all(|x| x.is_finite()));
             prop_assert_eq!(bits(&alone[0]), bits(together));
-        }
-    }
-}
-
-#[test]
-fn forecasts_of_a_crowd_have_the_same_bits_with_any_number_of_threads() {
-    let crowd = WINDOWS.last().unwrap();
-    for config in [
-        StarConfig::published(Variant::Full),
-        StarConfig::recommended(Variant::Full),
-    ] {
-        let network = MotionNetwork::new(config, 5).unwrap();
-        let ask = |threads| {
-            let rollouts = with_threads(threads, || Question::bounded(2).ask(&network, &[crowd]));
-            bits(&rollouts[0])
-        };
-        let one = ask(1);
-        for threads in [2, 3] {
-            assert_eq!(ask(threads), one, "{threads} threads");
         }
     }
 }

@@ -27,11 +27,8 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
                 spatial_layers: layers as usize,
                 ..published.clone()
             };
-            let network = MotionNetwork::new(config.clone(), 1).unwrap();
-            check(
-                config.min_weight_count(),
-                network.copy_weights().unwrap().numbers().len(),
-            );
+            let weights = MotionNetwork::new(config.clone(), 1).unwrap().copy_weights();
+            check(config.min_weight_count(), weights.unwrap().numbers().len());
         }
     }
     for [members, ends, width, layers, neighbour_width] in
@@ -45,14 +42,9 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
             neighbour_width,
             ..ProposalConfig::default()
         };
-        let network = ProposalNetwork::new(config.clone(), 1).unwrap();
-        assert_eq!(
-            config.parameter_count(),
-            network.copy_weights().unwrap().numbers().len()
-        );
-        check(
-            config.min_weight_count(),
-            network.copy_weights().unwrap().numbers().len(),
-        );
+        let weights = ProposalNetwork::new(config.clone(), 1).unwrap().copy_weights();
+        let count = weights.unwrap().numbers().len();
+        assert_eq!(config.parameter_count(), count);
+        check(config.min_weight_count(), count);
     }
 }

@@ -107,28 +107,3 @@ impl TimePanel {
         drawing.text("small end", [right, bottom + 30.0], "minutes");
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn errors_are_drawn_from_zero_on_a_scale_of_the_panel() {
-        let panel = |largest: f64| TimePanel {
-            name: format!("{largest} m"),
-            notes: ["0.1 m", "0.2 m"].map(str::to_owned),
-            curves: [0.5, 1.0].map(|share| vec![[0.0, share * largest], [2.0, 0.0]]),
-        };
-        let drawn = OverTime {
-            title: "Errors",
-            keys: ["without", "with"],
-            panels: &[panel(0.4), panel(4.0)],
-        };
-        let svg = drawn.to_file();
-        assert_eq!(svg.matches("curve c0").count(), 1 + 2);
-        for label in ["0.4", "4", "0.2 m", "without"] {
-            assert!(svg.contains(&format!(">{label}</text>")), "{label}: {svg}");
-        }
-        assert!(!svg.contains("NaN"));
-    }
-}

@@ -36,16 +36,6 @@ fn every_role_of_a_scene_is_drawn_and_named() {
 }
 
 #[test]
-fn everybody_has_hypotheses() {
-    let window = window(3);
-    let noisy = ConstantVelocity::AngularNoise { seed: 1 };
-    let forecast = noisy.forecast(&window).unwrap();
-    let svg = figure::scene(&window, &forecast).unwrap();
-    assert_eq!(count(&svg, STAR), 3 + 1);
-    assert_eq!(svg, figure::scene(&window, &forecast).unwrap());
-}
-
-#[test]
 fn a_window_without_future_has_no_truth() {
     let window = window(1).without_future();
     let forecast = ConstantVelocity::LastStep.forecast(&window).unwrap();

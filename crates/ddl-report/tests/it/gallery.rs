@@ -53,15 +53,8 @@ fn the_case_shown_is_the_median_one() {
     let windows = windows();
     let forecasts = oracle(&windows);
     let moments = gallery::moments("corridor", "oracle", &windows, &forecasts).unwrap();
-    let moment = moments
-        .iter()
-        .find(|m| m.picks.iter().any(|p| p.show == HighlightKind::Convergence))
-        .unwrap();
-    let pick = moment
-        .picks
-        .iter()
-        .find(|p| p.show == HighlightKind::Convergence)
-        .unwrap();
+    let mut picks = moments.iter().flat_map(|m| m.picks.iter().map(move |pick| (m, pick)));
+    let (moment, pick) = picks.find(|(_, p)| p.show == HighlightKind::Convergence).unwrap();
     let error = |window: &Window, i: usize, forecast: &Forecast| {
         average_displacement(forecast.hypothesis(i, 0), window.future(i))
     };

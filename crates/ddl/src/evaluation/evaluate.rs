@@ -203,7 +203,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts {
                 model: variants.iter().map(towards).collect::<Result<_, _>>()?,
                 lines: if lines_asked {
-                    straight_lines(ESTIMATED_GOALS, windows, &weighted(&goals)?)?
+                    straight_lines(windows, weighted(&goals)?)?
                 } else {
                     Vec::new()
                 },
@@ -301,7 +301,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 .iter()
                 .map(|goals| goals.iter().map(|&goal| WeightedGoals::certain(goal)).collect())
                 .collect();
-            let lines = straight_lines(goal, windows, &certain)?;
+            let lines = straight_lines(windows, certain)?;
             Ok(Forecasts {
                 model: vec![best.forecast_towards(windows, &goals)?],
                 lines,

@@ -32,8 +32,6 @@ pub struct GoalModel {
     source: ModelSource,
     config: RunConfig,
     origin: GoalOrigin,
-    /// Largest number of goals per pedestrian.
-    clusters: usize,
     /// The training motions that familiarity is measured against; `None` if too few are known.
     motions: Option<TrainingMotions>,
     /// The motions that it was trained on, as hashes.
@@ -100,7 +98,6 @@ impl GoalModel {
             ..config.goals.retrieval.clone()
         };
         params.check()?;
-        let clusters = params.clusters;
         let estimator =
             GoalEstimator::new(params, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
         let tracks = estimator.library().tracks();
@@ -118,7 +115,6 @@ impl GoalModel {
             source: ModelSource::Run(run),
             config,
             origin,
-            clusters,
             motions,
             fingerprints,
         })
@@ -137,12 +133,10 @@ impl GoalModel {
             fingerprints,
         } = unpacked;
         config.goals.retrieval.check()?;
-        let clusters = config.goals.retrieval.clusters;
         let goals = Self {
             source: source.clone(),
             config,
             origin: GoalOrigin::Proposed(proposal),
-            clusters,
             motions,
             fingerprints,
         };
@@ -174,7 +168,7 @@ impl GoalModel {
 
     /// Largest number of goals per pedestrian.
     pub fn clusters(&self) -> usize {
-        self.clusters
+        self.config.goals.retrieval.clusters
     }
 
     /// The retrieval of similar pedestrians, which reads the observed positions only; `None` where there is no expert
@@ -390,7 +384,7 @@ impl GoalModel {
                     .extend(set.weights().iter().map(|weight| weight * share));
             }
         }
-        let clusters = self.clusters;
+        let clusters = self.clusters();
         let sets: Vec<GoalSet> = (frames, proposed)
             .into_par_iter()
             .map(|((frame, _), ProposedEndpoints { endpoints, weights })| {

@@ -173,16 +173,13 @@ mod tests {
 
     use super::*;
     use proptest::prelude::*;
+    use rand::SeedableRng as _;
+    use rand_chacha::ChaCha8Rng;
 
-    /// Paths of 0.3 to 1.8 m/s with noise of up to 5 cm, from a linear congruential generator.
+    /// Paths of 0.3 to 1.8 m/s with noise of up to 5 cm.
     fn tracks() -> Vec<Vec<Position>> {
-        let mut state = 7_u64;
-        let mut draw = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (state >> 40) as f64 / (1_u64 << 24) as f64
-        };
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut draw = || random.random::<f64>();
         (0..4000)
             .map(|_| {
                 let (speed, tremble) = (0.3 + 1.5 * draw(), 0.05 * draw());

@@ -203,13 +203,6 @@ mod tests {
         Recording::new("other", recording.frame_step(), rows.filter_map(change).collect()).unwrap()
     }
 
-    fn moved(row: Observation, change: impl Fn(f64) -> f64) -> Observation {
-        Observation {
-            position: row.position.map(change),
-            ..row
-        }
-    }
-
     /// What another file of the same recording may change, and how much of it must be known then.
     #[test]
     fn a_recording_is_known_again() {
@@ -222,8 +215,12 @@ mod tests {
             assert!(share >= least, "{share} {least}");
         };
         known(1.0, &Some);
-        known(0.8, &|row| Some(moved(row, |x| (100.0 * x).round() / 100.0)));
-        known(0.5, &|row| Some(moved(row, |x| (100.0 * x).floor() / 100.0)));
+        let in_centimetres = |row: Observation, whole: fn(f64) -> f64| {
+            let position = row.position.map(|x| whole(100.0 * x) / 100.0);
+            Some(Observation { position, ..row })
+        };
+        known(0.8, &|row| in_centimetres(row, f64::round));
+        known(0.5, &|row| in_centimetres(row, f64::floor));
         known(1.0, &|row| {
             let [x, y] = row.position;
             let position = [y, x];

@@ -254,24 +254,17 @@ fn missing_forecasts_and_forecasts_without_a_pedestrian_are_counted_and_named() 
          the \
          windows are of yard, the file also of eth; is it of another fold?"
     );
-    for (text, expected) in [
+    for (until, pedestrian, expected) in [
+        (10, 5, "if observed_until were the first frame of a window"),
+        (90, 5, "if observed_until were the first frame forecast"),
         (
-            line(10, 5, &hypothesis(2.0)),
-            "if observed_until were the first frame of a window",
-        ),
-        (
-            line(90, 5, &hypothesis(2.0)),
-            "if observed_until were the first frame forecast",
-        ),
-        (
-            line(700, 5, &hypothesis(2.0)),
+            700,
+            5,
             "their frames run from 700 to 700, those of the windows from 70 to 80",
         ),
-        (
-            line(70, 6, &hypothesis(2.0)),
-            "another fold, data convention or window rule?",
-        ),
+        (70, 6, "another fold, data convention or window rule?"),
     ] {
+        let text = line(until, pedestrian, &hypothesis(2.0));
         let alone = complaint(&text, ExternalFormat::JsonLines);
         assert!(alone.contains(expected), "{alone}");
     }

@@ -208,15 +208,3 @@ fn bears_big_scores() {
         }
     }
 }
-
-#[test]
-fn results_do_not_depend_on_what_was_there() {
-    let big = SceneCase::new(12, STAR, &[30, 5], (2, 1), 1.0);
-    let small = SceneCase::new(13, STAR, &[4, 3], (1, 1), 1.0);
-    let attention = SpatialAttention::new(8);
-    for case in [&big, &small] {
-        let scenes = Scenes::new(&case.sizes, lists(&case.sizes, &case.visible));
-        let attended = attention.forward(case.inputs(), scenes.throughout(), None, false);
-        assert_eq!(*attended.mixed, case.run(Dispatch::detect().instruction_set()).0);
-    }
-}
