@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 /// A plan that the pedestrians respond to.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct GivenPlanOptions {
-    /// With --joint: csv of the plan of a robot, `t,x,y` in seconds after the moment and metres; the pedestrians respond
-    /// to it. It is read again for every moment, so that another program can replace it
+    /// With --joint: csv of the plan of a robot, `t,x,y` in seconds after the moment and metres; the pedestrians
+    /// respond to it. It is read again for every moment, so that another program can replace it
     #[arg(long, value_name = "FILE", requires = "joint", conflicts_with = "certificate")]
     plan: Option<PathBuf>,
     /// With --plan: the pedestrian of the tracks who follows the plan [default: none of them]
@@ -73,7 +73,8 @@ pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
     for column in ["t", "x", "y"] {
         if !headers.iter().any(|header| header == column) {
             bail!(
-                "{name}, line 1: no column `{column}`; a plan has the columns t,x,y (seconds after the moment, metres), \
+                "{name}, line 1: no column `{column}`; a plan has the columns t,x,y (seconds after the moment, metres),
+  \
                  and may have radius and plan"
             );
         }

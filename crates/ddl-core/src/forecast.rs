@@ -206,7 +206,8 @@ impl Forecast {
         self
     }
 
-    /// The same forecast, where pedestrian `i` follows these 12 positions (m) in every hypothesis, without a certificate.
+    /// The same forecast, where pedestrian `i` follows these 12 positions (m) in every hypothesis, without a
+    /// certificate.
     #[must_use]
     pub fn with_path(mut self, i: usize, path: &[Position; HORIZON]) -> Self {
         for k in 0..self.hypotheses {

@@ -179,7 +179,8 @@ impl Window {
     }
 
     /// The same window with bystanders: other pedestrians of the same 8 steps, whose futures are not known. A
-    /// forecaster [receives](Self::without_future) them too, but they are not scored. The ids of the window must ascend.
+    /// forecaster [receives](Self::without_future) them too, but they are not scored. The ids of the window must
+    /// ascend.
     ///
     /// # Panics
     /// When the bystanders have other observed frames.

@@ -37,8 +37,8 @@ pub enum Completeness {
 /// - Each pedestrian has its own clock: rows may come at any times, also at other times than those of other
 ///   pedestrians.
 /// - A pedestrian whose last row is not [too old](Self::with_max_age) is carried on to the frame.
-/// - A position too far from the expected one is left out, and [reported](Self::misfits). If the next rows agree with it,
-///   the track begins anew there, and also after 2 s without a row.
+/// - A position too far from the expected one is left out, and [reported](Self::misfits). If the next rows agree with
+///   it, the track begins anew there, and also after 2 s without a row.
 /// - A pedestrian without a row for 2 s is forgotten.
 /// - An error changes nothing: the same frame can be pushed again, corrected.
 /// - After a frame far ahead, earlier frames are refused; [`clear`](Self::clear) starts again.

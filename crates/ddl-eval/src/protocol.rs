@@ -89,7 +89,8 @@ impl Protocol {
             }
             Self::Joint => {
                 "at most 20 futures of the whole scene from the 8 observed frames alone: hypothesis k of all \
-                 pedestrians is future k; the best future is chosen once for the scene; a trained model is that of `fair`"
+                 pedestrians is future k; the best future is chosen once for the scene; a trained model is that of
+  `fair`"
             }
         }
     }

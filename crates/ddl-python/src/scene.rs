@@ -22,7 +22,8 @@ type JointArrays<'py> = (
 pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
     if rows.shape()[1] != 4 {
         return Err(PyValueError::new_err(format!(
-            "a plan must have the shape (m, 3) or (m, 4): t in seconds after the moment, x, y and radius in metres; found \
+            "a plan must have the shape (m, 3) or (m, 4): t in seconds after the moment, x, y and radius in metres;
+  found \
              {:?}",
             rows.shape()
         )));
@@ -52,7 +53,8 @@ fn futures((past, paths, weights, spread): &JointArrays<'_>) -> PyResult<Futures
     Futures::new(&window, forecast).map_err(of_any)
 }
 
-/// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step and until its end `(p, 12)`.
+/// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step
+/// and until its end `(p, 12)`.
 #[pyfunction]
 pub(crate) fn risks<'py>(
     py: Python<'py>,

@@ -20,8 +20,8 @@ pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
     ]
 }
 
-/// Groups of at least two pedestrians of a window who walk together, as indices in ascending order: linked by pairs whose
-/// mean distance over the observation is below 2.2 m and whose mean velocities differ by less than 0.35 m/s.
+/// Groups of at least two pedestrians of a window who walk together, as indices in ascending order: linked by pairs
+/// whose mean distance over the observation is below 2.2 m and whose mean velocities differ by less than 0.35 m/s.
 ///
 /// Two who stand beside each other count as a group, too.
 #[must_use]

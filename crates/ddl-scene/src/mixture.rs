@@ -43,8 +43,8 @@ impl JointMixture {
         mixture
     }
 
-    /// The mean of the values `[i][h]` of the hypotheses of a pedestrian in one future; `pair` = `i * K + k`. Exactly the
-    /// value of a hypothesis where the future is one.
+    /// The mean of the values `[i][h]` of the hypotheses of a pedestrian in one future; `pair` = `i * K + k`. Exactly
+    /// the value of a hypothesis where the future is one.
     pub fn mean<const D: usize>(&self, pair: usize, value: impl Fn(usize, usize) -> [f64; D]) -> [f64; D] {
         let hypotheses = self.weights.len();
         let shares = &self.shares[pair * hypotheses..][..hypotheses];
@@ -60,8 +60,8 @@ impl JointMixture {
         mean.map(|sum| sum / total)
     }
 
-    /// The scales `[N][12]` (m) of the Student's t around the paths of the futures, from those around the hypotheses: the
-    /// squared distance of the hypotheses from their mixture is added to the variance. `None` without a spread.
+    /// The scales `[N][12]` (m) of the Student's t around the paths of the futures, from those around the hypotheses:
+    /// the squared distance of the hypotheses from their mixture is added to the variance. `None` without a spread.
     pub fn scales(&self, forecast: &Forecast) -> Option<Vec<f64>> {
         let hypotheses = self.weights.len();
         let mut scales = Vec::with_capacity(forecast.pedestrians() * HORIZON);
@@ -97,8 +97,8 @@ impl JointMixture {
     }
 }
 
-/// The pedestrians in the order of their ids, which does not depend on the order of the window, and then who follows the
-/// plan.
+/// The pedestrians in the order of their ids, which does not depend on the order of the window, and then who follows
+/// the plan.
 struct Scene {
     people: Vec<Hypotheses>,
     seeds: Vec<u64>,

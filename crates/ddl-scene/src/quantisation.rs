@@ -1,8 +1,8 @@
 //! K clusters of the samples, as points of the joint space of all pedestrians: k-means.
 //!
 //! The quantisation of the joint distribution keeps the error of the best of K futures small: each future is the mean
-//! of a cluster of similar scenes. A sample is a hypothesis of each pedestrian, so its squared distance to a centre is a
-//! sum over pedestrians of entries of small tables, and a centre is the number of its samples with each hypothesis.
+//! of a cluster of similar scenes. A sample is a hypothesis of each pedestrian, so its squared distance to a centre is
+//! a sum over pedestrians of entries of small tables, and a centre is the number of its samples with each hypothesis.
 
 use crate::hypotheses::Hypotheses;
 use rand::{RngExt as _, SeedableRng as _};

@@ -115,7 +115,8 @@ proptest! {
 
     #[test]
     fn pedestrians_far_apart_keep_their_weights(headings in vec(0.0..6.2f64, 2..5)) {
-        let people: Vec<Person> = headings.iter().zip(0..).map(|(&h, i)| ([100.0 * f64::from(i), 0.0], h, 1.2)).collect();
+        let people: Vec<Person> = headings.iter().zip(0..).map(|(&h, i)| ([100.0 * f64::from(i), 0.0], h,
+  1.2)).collect();
         let (_, mixture) = mixture(&people);
         for i in 0..people.len() {
             for (found, weight) in marginal(&mixture, i).into_iter().zip(WEIGHTS) {

@@ -34,8 +34,8 @@ pub(crate) struct OccupancyCommand {
     /// Folder for the files of npy and pgm, created if missing
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
-    /// Format: jsonl (one message of the layout of `nav_msgs/OccupancyGrid` for each time), npy (one array of times, rows
-    /// and columns for each moment) or pgm (one image for each time), both with
+    /// Format: jsonl (one message of the layout of `nav_msgs/OccupancyGrid` for each time), npy (one array of times,
+    /// rows and columns for each moment) or pgm (one image for each time), both with
     /// a yaml of origin and resolution, as map servers read it
     /// [default: jsonl; with --folder npy]
     #[arg(long, value_enum)]

@@ -105,7 +105,8 @@ impl RiskCommand {
             state.tell_once(
                 "far ego",
                 format_args!(
-                    "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after \
+                    "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after
+  \
                      the moment, and the positions of the tracks (told once)",
                     apart(&far)
                 ),

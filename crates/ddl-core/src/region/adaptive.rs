@@ -68,7 +68,8 @@ impl AdaptiveRegions {
     }
 
     /// Learns from the positions at the last observed frame of the window, and gives the forecast its new regions
-    /// and weights. If the frame is not later than the previous one, the pending forecasts are [cleared](Self::clear) first.
+    /// and weights. If the frame is not later than the previous one, the pending forecasts are [cleared](Self::clear)
+    /// first.
     ///
     /// # Panics
     /// When the forecast has fewer pedestrians than the window.

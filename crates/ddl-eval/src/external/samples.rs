@@ -8,8 +8,8 @@
 //! ```
 //!
 //! SCENE is the recording, the folder's number its last observed frame. A row is `frame pedestrian x y`, in numbers
-//! with spaces between them, metres; rows of one pedestrian stand together in order of time. Futures have no weights, so
-//! those read have equal ones. Other writers print three decimals; here all digits are printed, so reading gives the
+//! with spaces between them, metres; rows of one pedestrian stand together in order of time. Futures have no weights,
+//! so those read have equal ones. Other writers print three decimals; here all digits are printed, so reading gives the
 //! same bits.
 
 use std::collections::BTreeMap;

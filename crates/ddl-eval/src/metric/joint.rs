@@ -10,8 +10,8 @@
 //!
 //! "Joint Metrics Matter" (Weng et al., ICCV 2023) takes means over windows, of any number of pedestrians, and discs of
 //! radius 0.1 m, so d = 0.2 m between centres (its evaluator, `ericaweng/joint-metrics-matter` at 894182b). Its
-//! `CR_mean` is the mean of `c_k` over k, its `CR_JADE` is `c_k` of the future of JADE; a window of one pedestrian counts
-//! as 0. Its windows are those of the rule `social-gan-1`. It gives the same numbers for exported
+//! `CR_mean` is the mean of `c_k` over k, its `CR_JADE` is `c_k` of the future of JADE; a window of one pedestrian
+//! counts as 0. Its windows are those of the rule `social-gan-1`. It gives the same numbers for exported
 //! [samples](crate::external::write_samples).
 
 use ddl_core::Position;

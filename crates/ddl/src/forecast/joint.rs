@@ -1,8 +1,8 @@
 //! From the hypotheses of single pedestrians to the joint futures of a scene.
 //!
-//! A future gives each pedestrian a goal, the mean of the goals of its mixture, and a flow there, whose factors of P are
-//! the mean of those of the mixture. The mean of factors with positive diagonals has a positive diagonal, so P stays
-//! positive definite, and every path has its certificate as a hypothesis has.
+//! A future gives each pedestrian a goal, the mean of the goals of its mixture, and a flow there, whose factors of P
+//! are the mean of those of the mixture. The mean of factors with positive diagonals has a positive diagonal, so P
+//! stays positive definite, and every path has its certificate as a hypothesis has.
 
 use crate::forecast::certified::Walked;
 use crate::trust::calibration::Calibration;

@@ -172,8 +172,8 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
         Ok(self)
     }
 
-    /// Like [`push`](Self::push), with the [joint futures](Ddl::forecast_scenes) of the scene, whose pedestrians respond
-    /// to a plan if there is one. Regions and weights do not adapt.
+    /// Like [`push`](Self::push), with the [joint futures](Ddl::forecast_scenes) of the scene, whose pedestrians
+    /// respond to a plan if there is one. Regions and weights do not adapt.
     ///
     /// # Errors
     /// As [`push`](Self::push).

@@ -105,8 +105,8 @@ impl Calibration {
         goals.tempered(power, of_pace.uniform_share)
     }
 
-    /// Scales of the [spread](ddl_core::Spread) around the positions of the hypotheses, one for each step (m). The pedestrian was
-    /// observed at these positions (m), `time_step` seconds apart, and has these goals.
+    /// Scales of the [spread](ddl_core::Spread) around the positions of the hypotheses, one for each step (m). The
+    /// pedestrian was observed at these positions (m), `time_step` seconds apart, and has these goals.
     pub(crate) fn spread(
         &self,
         pace: Pace,

@@ -30,8 +30,8 @@ pub(crate) struct ForecastCommand {
     /// One hypothesis per pedestrian instead of 20: to a central goal that represents the 20
     #[arg(long)]
     one: bool,
-    /// Joint futures of each scene instead of hypotheses of each pedestrian: people who walk together stay together, and
-    /// people do not walk through each other
+    /// Joint futures of each scene instead of hypotheses of each pedestrian: people who walk together stay together,
+    /// and people do not walk through each other
     ///
     /// Future k of all pedestrians is one future, with one weight. csv has the column `future` instead of `hypothesis`;
     /// jsonl has one object for each moment, with the groups. Regions and weights do not adapt.

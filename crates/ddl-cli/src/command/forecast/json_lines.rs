@@ -1,5 +1,5 @@
-//! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads; of joint
-//! futures one object for each moment.
+//! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads; of
+//! joint futures one object for each moment.
 
 use crate::command::forecast::moment::Moment;
 use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName};
