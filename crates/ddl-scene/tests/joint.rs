@@ -31,7 +31,7 @@ fn scene(people: &[Person], ids: &[i64]) -> (Window, Forecast) {
         .flat_map(|&one| TURNS.into_iter().flat_map(move |turn| path(one, turn)));
     let goals = people
         .iter()
-        .flat_map(|&one| TURNS.map(|turn| path(one, turn).last().unwrap()));
+        .flat_map(|&one| TURNS.map(|turn| path(one, turn).next_back().unwrap()));
     let forecast = Forecast::new(
         people.len(),
         K,
