@@ -360,20 +360,20 @@ def draw_panel(axes: Axes, moment: ddl.Window, joint: ddl.Forecast) -> None:
         axes.plot(*seen.T, ".", color="#222222", markersize=4, label="observed, 3.2 s")
         axes.plot(*seen[-1], "o", color="#222222", markersize=4)
     left = float(((every - every.mean(axis=0)) @ turn)[:, 0].min())
-    axes.plot([left, left + 2], [0, 0], color="#222222", linewidth=2, transform=axes.get_xaxis_transform())
-    axes.text(left + 1, 0.03, "2 m", ha="center", size=8, transform=axes.get_xaxis_transform())
+    axes.plot([left, left + 2], [0.02, 0.02], color="#222222", linewidth=2, transform=axes.get_xaxis_transform())
+    axes.text(left + 1, 0.05, "2 m", ha="center", size=8, transform=axes.get_xaxis_transform())
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.04, 0.2)
     axes.axis("off")
 
 
 def draw_social(examples: dict[str, list[tuple[float, str, ddl.Window, ddl.Forecast]]], path: str) -> None:
-    figure, grid = plt.subplots(2, 2, figsize=(9, 4.6), layout="constrained")
+    figure, grid = plt.subplots(2, 2, figsize=(9, 4.8), layout="constrained")
     for axes, kind in zip(grid.flat, PANELS, strict=True):
         found = sorted(examples[kind], key=lambda one: one[0])
         error, name, moment, joint = found[len(found) // 2]
         draw_panel(axes, moment, joint)
-        title = f"{kind}: {name}, frame {moment.frame}; joint error {error:.2f} m, median of {len(found)}"
+        title = f"{kind}: {name}, frame {moment.frame}\nbest joint future {error:.2f} m off, median of {len(found)}"
         axes.set_title(title, size=9)
     legend = [of[3::-1] for of in axes.get_legend_handles_labels()]
     figure.legend(*legend, loc="outside lower center", ncols=4, frameon=False)

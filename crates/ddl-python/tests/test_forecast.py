@@ -10,7 +10,7 @@ import ddl_forecast as ddl
 import numpy as np
 import pytest
 from conftest import run
-from ddl_forecast import baselines, metrics
+from ddl_forecast import baselines
 
 
 def test_shapes_and_laws(forecaster, crossing):

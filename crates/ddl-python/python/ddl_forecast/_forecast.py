@@ -195,8 +195,8 @@ class Forecast:
         Parameters
         ----------
         plans
-            (p, m, 3) or a sequence of (m, 3): rows of t in seconds from now, x and y in metres; with a fourth column, the
-            radius of whoever follows the plan. Before its first row and after its last one it stands there.
+            (p, m, 3) or a sequence of (m, 3): rows of t in seconds from now, x and y in metres; with a fourth column,
+            the radius of whoever follows the plan. Before its first row and after its last one it stands there.
         within
             Distance from the edge of a plan, metres.
         ego

@@ -34,7 +34,7 @@ def scene(rng):
         "within": float(rng.uniform(0.1, 0.6)),
     }
     reach = case["within"] + 0.3
-    total, nearest, steps, until = 0, 0, np.zeros(12), np.zeros(12)
+    nearest, steps, until = 0, np.zeros(12), np.zeros(12)
     pedestrians, clearances = np.zeros(n), np.zeros(n)
     for future in range(k):
         close, far = np.zeros((12, DRAWS), bool), np.full(DRAWS, np.inf)
