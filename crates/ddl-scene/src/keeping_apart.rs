@@ -10,8 +10,6 @@ use ddl_core::HORIZON;
 
 /// Rounds in which paths that collide are replaced.
 const ROUNDS: usize = 3;
-/// Hypotheses of each of the two that are tried: those nearest to the mean.
-const CANDIDATES: usize = 8;
 /// Paths are kept apart by this multiple of the distance at which they collide, because the flow to a mean goal is not
 /// exactly the mean of the paths.
 const MARGIN: f32 = 1.05;
@@ -51,13 +49,13 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
             };
             let candidates = [pair.first, pair.second].into_iter().flat_map(|i| {
                 let now = collisions(i, &paths[i]);
-                nearest_hypotheses(&people[i], &means[i])
-                    .into_iter()
-                    .map(move |near| (i, near, now))
+                let possible = (0..people[i].count()).filter(move |&h| people[i].weights[h] > 0.0);
+                possible.map(move |hypothesis| (i, hypothesis, now))
             });
-            let costs = candidates.filter_map(|(i, (distance, hypothesis), now)| {
-                let then = collisions(i, &people[i].path(hypothesis));
-                (then < now).then(|| (now - then, distance, i, hypothesis))
+            let costs = candidates.filter_map(|(i, hypothesis, now)| {
+                let path = people[i].path(hypothesis);
+                let then = collisions(i, &path);
+                (then < now).then(|| (now - then, far(&path, &means[i]), i, hypothesis))
             });
             let best = costs.min_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
             if let Some((_, _, i, hypothesis)) = best {
@@ -71,15 +69,6 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
             break;
         }
     }
-}
-
-/// The hypotheses nearest to a path, each with its distance (m).
-fn nearest_hypotheses(one: &Hypotheses, path: &Path) -> Vec<(f32, usize)> {
-    let possible = (0..one.count()).filter(|&hypothesis| one.weights[hypothesis] > 0.0);
-    let mut near: Vec<(f32, usize)> = possible.map(|h| (far(&one.path(h), path), h)).collect();
-    near.sort_by(|a, b| a.0.total_cmp(&b.0));
-    near.truncate(CANDIDATES);
-    near
 }
 
 /// Squared least distance (m²) of two paths of a pair.
