@@ -1,9 +1,10 @@
 //! Plans from files.
 
+use crate::command::forecast::StreamState;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::GivenPlan;
-use ddl::data::PedestrianName;
+use ddl::data::{OBSERVED, PedestrianName, Window, distance};
 use ddl::scene::{Plan, PlanPoint};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ pub(crate) struct GivenPlanOptions {
     plan: Option<PathBuf>,
     /// With --plan: the pedestrian of the tracks who follows the plan [default: none of them]
     #[arg(long, value_name = "NAME", requires = "plan")]
-    ego: Option<String>,
+    pub(crate) ego: Option<String>,
 }
 
 impl GivenPlanOptions {
@@ -37,6 +38,35 @@ impl GivenPlanOptions {
         }
     }
 }
+
+/// Tells once if the pedestrian who is said to follow the plans is not there, or is far from where they start.
+pub(crate) fn tell_doubts_of_ego(ego: Option<&str>, plans: &[&Plan], window: &Window, state: &mut StreamState) {
+    let Some(name) = ego else { return };
+    let Some(i) = window.named(&PedestrianName::of_text(name)) else {
+        state.tell_once(
+            "no ego",
+            format_args!(
+                "note: pedestrian {name} of --ego is not in every moment; there nobody of the tracks follows the plan \
+                 (told once)"
+            ),
+        );
+        return;
+    };
+    let apart = |plan: &&&Plan| distance(plan.at(0.0).position, window.observed(i)[OBSERVED - 1]);
+    if let Some(far) = plans.iter().find(|plan| apart(plan) > FAR) {
+        state.tell_once(
+            "far ego",
+            format_args!(
+                "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after the \
+                 moment, and the positions of the tracks (told once)",
+                apart(&far)
+            ),
+        );
+    }
+}
+
+/// A plan that starts farther than this from the pedestrian who follows it is doubtful, metres.
+const FAR: f64 = 2.0;
 
 /// A plan of a file.
 #[derive(Debug)]

@@ -4,7 +4,8 @@
 //!
 //! ```text
 //! p(h_1 .. h_N) ~ prod_i w_i(h_i) prod_(i,j) exp(-C_ij - T_ij)
-//! C = conflict(d / near)                    d: least distance of the two paths, near = min(0.4 m, present distance)
+//! C = conflict(d / near)                    d: least distance of the two paths, looked at every 0.2 s;
+//!                                           near = min(0.4 m, present distance), at least 0.1 m
 //! T = c / sqrt(partners) log(1 + D² / 3)    D = |difference of the displacements in 4.8 s| / scale
 //! ```
 //!

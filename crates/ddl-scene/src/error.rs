@@ -19,6 +19,8 @@ pub enum SceneError {
     },
     #[error("a forecast without spread has no risk and no occupancy; make it with all hypotheses of a model")]
     NoSpread,
+    #[error("a forecast of {found} hypotheses has no joint futures; at most {most} hypotheses: train with fewer goals")]
+    Hypotheses { found: usize, most: usize },
     #[error("{name} is {value}; it must be {expected}")]
     Number {
         name: &'static str,

@@ -71,12 +71,12 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
     }
 }
 
-/// Squared least distance (m²) of two paths of a pair.
+/// Squared least distance (m²) of two paths of a pair, from the first step on.
 fn apart_squared(people: &[Hypotheses], pair: &Pair, first: &Path, second: &Path) -> f32 {
     let [from, to] = [pair.first, pair.second].map(|i| people[i].present);
     let offset = [0, 1].map(|axis| (to[axis] - from[axis]) as f32);
     let between = |t: usize| [0, 1].map(|axis| second[t][axis] + offset[axis] - first[t][axis]);
-    let squared = (0..HORIZON).map(|t| least_squared(between(t), between(t + 1)));
+    let squared = (1..HORIZON).map(|t| least_squared(between(t), between(t + 1)));
     squared.fold(f32::INFINITY, f32::min)
 }
 

@@ -23,11 +23,14 @@ pub struct JointMixture {
 }
 
 impl JointMixture {
+    /// The most hypotheses of a pedestrian.
+    pub const MOST_HYPOTHESES: usize = 255;
+
     /// As many joint futures of this window as its forecast has hypotheses. Who follows the plan, if there is one, is
     /// somebody else, or the pedestrian `ego` of the window; the others react to it.
     ///
     /// # Panics
-    /// When the forecast has another number of pedestrians than the window, or more than 256 hypotheses.
+    /// When the forecast has another number of pedestrians than the window, or more than 255 hypotheses.
     pub fn of(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
         let hypotheses = forecast.hypotheses();
         assert!(
@@ -70,13 +73,12 @@ impl JointMixture {
                 let mut within = 0.0;
                 for (k, weight) in self.weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
                     let pair = i * hypotheses + k;
-                    let [x, y, square] = self.mean(pair, |i, h| {
-                        let [x, y] = forecast.hypothesis(i, h)[t];
-                        let [x0, y0] = forecast.hypothesis(i, 0)[t];
-                        let [dx, dy] = [x - x0, y - y0];
-                        [dx, dy, dx * dx + dy * dy]
+                    let [x, y] = self.mean(pair, |i, h| forecast.hypothesis(i, h)[t]);
+                    let [square] = self.mean(pair, |i, h| {
+                        let [dx, dy] = [0, 1].map(|axis| forecast.hypothesis(i, h)[t][axis] - [x, y][axis]);
+                        [dx * dx + dy * dy]
                     });
-                    within += weight * (square - x * x - y * y).max(0.0);
+                    within += weight * square;
                 }
                 // On each axis the variance of the Student's t is 3 s², and half of the squared distance.
                 let scale = forecast.scale(i, t)?;

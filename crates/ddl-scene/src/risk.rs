@@ -52,7 +52,7 @@ impl Futures {
     /// For each plan, how likely somebody comes within `within` metres of its edge, if nobody sees it. The pedestrian
     /// `ego` who follows the plan, if there is one, is no risk to itself.
     ///
-    /// A thousand plans among 25 pedestrians with 20 futures take about 20 ms on one core. The result does not depend
+    /// A thousand plans among 25 pedestrians with 20 futures take some 20 ms on one core. The result does not depend
     /// on the number of threads, nor on which other plans there are.
     ///
     /// # Errors
@@ -70,9 +70,6 @@ impl Futures {
     ///
     /// # Errors
     /// As [`risks`](Self::risks).
-    ///
-    /// # Panics
-    /// When there is no pedestrian `ego`.
     pub fn risks_if_seen(&self, plans: &[Plan], within: f64, ego: Option<usize>) -> Result<Vec<Risk>, SceneError> {
         let [strangers, companions] = Energy::learned().avoidance(within);
         let mut odds = vec![1.0 / strangers; self.pedestrians()];
@@ -103,7 +100,7 @@ impl Futures {
     }
 
     /// For each plan, how far from its edge pedestrians are expected to stay. The model is that of the
-    /// [risk](Self::risks). Without its short cuts a plan takes milliseconds.
+    /// [risk](Self::risks). Without its short cuts a plan takes some 10 ms.
     ///
     /// # Errors
     /// The forecast has no spread.

@@ -13,5 +13,6 @@ mod table;
 mod told_once;
 
 pub(crate) use arguments::{ForecastCommand, OutputFormat};
+pub(crate) use kept_memory::file_stem;
 pub(crate) use moment::{SceneWindows, StreamState, WindowForecasts};
 pub(crate) use stream::{Answer, StreamOptions, answer};

@@ -1,6 +1,6 @@
 //! `ddl occupancy`: where somebody will be.
 
-use crate::command::forecast::{Answer, SceneWindows, StreamOptions, StreamState, WindowForecasts, answer};
+use crate::command::forecast::{Answer, SceneWindows, StreamOptions, StreamState, WindowForecasts, answer, file_stem};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::Ddl;
@@ -147,7 +147,7 @@ impl Answer for OccupancyCommand {
             let grids = futures.occupancy(&area, &times, self.radius)?;
             let moment_number = moment.observed_until().rounded();
             if self.folder.is_some() {
-                let scene = moment.scene.map_or_else(String::new, |scene| format!("{scene}_"));
+                let scene = moment.scene.map_or_else(String::new, |scene| file_stem(scene) + "_");
                 self.write(&format!("{scene}{moment_number}"), &area, grids, times.len())?;
                 continue;
             }

@@ -4,7 +4,7 @@ use crate::command::forecast::{
     Answer, OutputFormat, SceneWindows, StreamOptions, StreamState, WindowForecasts, answer,
 };
 use crate::output::{table_metres, table_share};
-use crate::plans::{NamedPlan, read_plans};
+use crate::plans::{NamedPlan, read_plans, tell_doubts_of_ego};
 use anyhow::Context as _;
 use clap::Args;
 use ddl::Ddl;
@@ -12,9 +12,6 @@ use ddl::data::{Clock, FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STE
 use ddl::scene::{Clearance, Futures, Plan};
 use serde::Serialize;
 use std::path::PathBuf;
-
-/// A plan that starts farther than this from the pedestrian who follows it is doubtful, metres.
-const FAR: f64 = 2.0;
 
 /// Risk of plans: how likely somebody comes close, from the joint futures of every moment
 #[derive(Debug, Args)]
@@ -29,7 +26,7 @@ pub(crate) struct RiskCommand {
     /// Plans: csv of `t,x,y` in seconds after the moment and metres, and where there are `radius` (metres) and `plan`,
     /// the name of one of several candidates
     ///
-    /// It is read again for every moment, so that another program can replace it. Before its first row and after its
+    /// It is read again for every moment, so that another program can replace it (by renaming a whole file). Before its first row and after its
     /// last one whoever follows a plan stands there.
     #[arg(long, value_name = "FILE")]
     plan: PathBuf,
@@ -85,33 +82,6 @@ impl RiskCommand {
 
     fn ego(&self, window: &Window) -> Option<usize> {
         window.named(&PedestrianName::of_text(self.ego.as_deref()?))
-    }
-
-    fn tell_doubts(&self, window: &Window, plans: &[Plan], state: &mut StreamState) {
-        let Some(name) = &self.ego else { return };
-        let Some(ego) = self.ego(window) else {
-            state.tell_once(
-                "no ego",
-                format_args!(
-                    "note: pedestrian {name} of --ego is not in every moment; there nobody of the tracks follows the \
-                     plans (told once)"
-                ),
-            );
-            return;
-        };
-        let present = window.observed(ego)[window.observed(ego).len() - 1];
-        let apart = |plan: &&Plan| ddl::data::distance(plan.at(0.0).position, present);
-        if let Some(far) = plans.iter().find(|plan| apart(plan) > FAR) {
-            state.tell_once(
-                "far ego",
-                format_args!(
-                    "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after
-  \
-                     the moment, and the positions of the tracks (told once)",
-                    apart(&far)
-                ),
-            );
-        }
     }
 
     fn csv(&self, lines: &[PlanLine<'_>], headed: bool) -> anyhow::Result<String> {
@@ -170,7 +140,8 @@ impl Answer for RiskCommand {
         self.stream.tell_of_unfamiliar(&moments, state);
         let mut lines = Vec::new();
         for moment in &moments {
-            self.tell_doubts(moment.window, &plans, state);
+            let all: Vec<&Plan> = plans.iter().collect();
+            tell_doubts_of_ego(self.ego.as_deref(), &all, moment.window, state);
             let ego = self.ego(moment.window);
             let futures = Futures::new(moment.window, moment.forecast.clone())?;
             let risks = if self.unseen {

@@ -211,6 +211,9 @@ class Forecast:
             if found.size == 0:
                 raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
             row = int(found[0])
+        if not rows.any():
+            count = len(plans)
+            return Risk(np.zeros(count), np.zeros((count, len(self))), np.zeros((count, 12)), np.zeros((count, 12)))
         total, people, steps, until = _core.risks(joint, [plan_rows(plan) for plan in plans], within, row, seen)
         of_each = np.zeros((len(total), len(self)))
         of_each[:, rows] = people

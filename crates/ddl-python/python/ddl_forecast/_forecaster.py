@@ -95,7 +95,7 @@ class Forecaster:
             Return the evidence that each hypothesis approaches its goal, for each step.
         joint
             Joint futures of the scene instead of hypotheses of each pedestrian: hypothesis k of all is one future, in
-            which people who walk together stay together, and nobody walks through another.
+            which people who walk together stay together, and seldom anybody walks through another.
         plan
             With ``joint``: (m, 3) rows of t in seconds from now, x and y, the plan of a robot, to which the pedestrians
             respond.
@@ -155,6 +155,10 @@ class Forecaster:
             raise ValueError("a plan needs joint=True, and has no certificates")
         if plan is None and ego is not None:
             raise ValueError("ego is the row that follows a plan: give plan")
+        for past in pasts:
+            rows = np.asarray(past)
+            if ego is not None and not (0 <= ego < len(rows) and np.isfinite(rows[ego, -1]).all()):
+                raise ValueError(f"ego is row {ego}, which past does not have or does not observe now")
         given = None if plan is None else (plan_rows(plan), ego)
         made, doubt = self._core.forecast(arrays, asked, samples, whole, certificates, joint, given)
         return _told([Forecast._of(parts, joint=joint) for parts in made], doubt)

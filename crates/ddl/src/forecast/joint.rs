@@ -5,10 +5,11 @@
 //! stays positive definite, and every path has its certificate as a hypothesis has.
 
 use crate::forecast::certified::Walked;
+use crate::forecast::name::NAME;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError, Spread, TIME_STEP};
 use ddl_data::{HORIZON, PedestrianName, Position};
-use ddl_scene::{JointMixture, Plan};
+use ddl_scene::{JointMixture, Plan, SceneError};
 
 /// A plan that the pedestrians of a scene respond to.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,6 +23,10 @@ pub struct GivenPlan {
 impl Walked<'_> {
     /// The same pedestrians with joint futures instead of hypotheses.
     pub(crate) fn joint(mut self, given: Option<&GivenPlan>) -> Result<Self, ForecastError> {
+        if self.hypotheses > JointMixture::MOST_HYPOTHESES {
+            let (found, most) = (self.hypotheses, JointMixture::MOST_HYPOTHESES);
+            return Err(ForecastError::model(NAME, SceneError::Hypotheses { found, most }));
+        }
         let paths = std::mem::take(&mut self.rolled_out);
         let marginal = self.at(paths)?;
         let ego = self.ego(given);

@@ -3,7 +3,7 @@
 use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::forecast::stream::{Answer, StreamOptions, answer};
 use crate::command::forecast::{json_lines, table};
-use crate::plans::GivenPlanOptions;
+use crate::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
@@ -31,7 +31,7 @@ pub(crate) struct ForecastCommand {
     #[arg(long)]
     one: bool,
     /// Joint futures of each scene instead of hypotheses of each pedestrian: people who walk together stay together,
-    /// and people do not walk through each other
+    /// and people seldom walk through each other
     ///
     /// Future k of all pedestrians is one future, with one weight. csv has the column `future` instead of `hypothesis`;
     /// jsonl has one object for each moment, with the groups. Regions and weights do not adapt.
@@ -113,6 +113,11 @@ impl Answer for ForecastCommand {
         clock: Clock,
         state: &mut StreamState,
     ) -> anyhow::Result<String> {
+        if let Some(given) = self.given.read()? {
+            let ego = self.given.ego.as_deref();
+            let each = windows.windows.iter();
+            each.for_each(|window| tell_doubts_of_ego(ego, &[&given.plan], window, state));
+        }
         let mut forecasts = self.forecasts(model, windows.windows)?;
         if !self.region.is_empty() && !self.joint {
             for (i, forecast) in forecasts.each_mut().into_iter().enumerate() {

@@ -72,7 +72,7 @@ impl KeptMemory {
             }
             // After a failure, the scene does not try again at every frame.
             self.memories.insert(scene.cloned(), None);
-            let memory = OpenMemory::open(&self.path.join(file_name(name)))?;
+            let memory = OpenMemory::open(&self.path.join(file_stem(name) + ".memory"))?;
             self.memories.insert(scene.cloned(), Some(memory));
         }
         let Some(Some(memory)) = self.memories.get_mut(&scene.cloned()) else {
@@ -170,8 +170,8 @@ impl OpenMemory {
     }
 }
 
-/// The file name of a scene: characters with a meaning in paths are written as `%` and two hexadecimal digits.
-fn file_name(scene: &SceneName) -> String {
+/// The name of a scene in file names: characters with a meaning in paths are written as `%` and two hexadecimal digits.
+pub(crate) fn file_stem(scene: &SceneName) -> String {
     let mut name = String::new();
     for byte in scene.as_str().bytes() {
         if byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_') {
@@ -180,7 +180,7 @@ fn file_name(scene: &SceneName) -> String {
             let _ = write!(name, "%{byte:02X}");
         }
     }
-    name + ".memory"
+    name
 }
 
 #[cfg(test)]
@@ -195,7 +195,7 @@ mod tests {
             ("a b", "a%20b.memory"),
             ("C:\\é", "C%3A%5C%C3%A9.memory"),
         ] {
-            assert_eq!(file_name(&SceneName::new(scene).unwrap()), file);
+            assert_eq!(file_stem(&SceneName::new(scene).unwrap()) + ".memory", file);
         }
     }
 }
