@@ -26,8 +26,8 @@ pub(crate) struct RiskCommand {
     /// Plans: csv of `t,x,y` in seconds after the moment and metres, and where there are `radius` (metres) and `plan`,
     /// the name of one of several candidates
     ///
-    /// It is read again for every moment, so that another program can replace it (by renaming a whole file). Before its first row and after its
-    /// last one whoever follows a plan stands there.
+    /// It is read again for every moment, so that another program can replace it (by renaming a whole file). Before its
+    /// first row and after its last one whoever follows a plan stands there.
     #[arg(long, value_name = "FILE")]
     plan: PathBuf,
     /// Distance from the edge of the plan that counts as close, metres

@@ -108,8 +108,8 @@ impl Ddl {
     }
 
     /// The joint futures of each window: hypothesis k of all pedestrians is future k, with one weight for the scene, so
-    /// that people who walk together stay together and seldom walk through each other. With a plan the others respond to
-    /// it, and whoever follows it does so in every future. With one pedestrian it is the forecast of
+    /// that people who walk together stay together and seldom walk through each other. With a plan the others respond
+    /// to it, and whoever follows it does so in every future. With one pedestrian it is the forecast of
     /// [`forecast_all`](Forecaster::forecast_all). For the variant without goals noise vector k is future k, and a plan
     /// changes nothing.
     ///
