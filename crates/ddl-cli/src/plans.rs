@@ -57,9 +57,8 @@ pub(crate) fn tell_doubts_of_ego(ego: Option<&str>, plans: &[&Plan], window: &Wi
         state.tell_once(
             "far ego",
             format_args!(
-                "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after the
-  \
-                 moment, and the positions of the tracks (told once)",
+                "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after \
+                 the moment, and the positions of the tracks (told once)",
                 apart(&far)
             ),
         );
