@@ -2,7 +2,8 @@
 //!
 //! A future is the mean of similar samples. The mean may lead two people through each other where its samples do not,
 //! and a few samples collide too. Then one of the two follows one of its hypotheses instead: of those that collide with
-//! the fewest others, the one nearest to the mean.
+//! the fewest others, the one nearest to the mean. Two who are that close already stay as they are: they collide on
+//! every path, because the present counts.
 
 use crate::hypotheses::{Hypotheses, least_squared};
 use crate::pairs::{Pair, neighbours};
@@ -71,12 +72,12 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
     }
 }
 
-/// Squared least distance (m²) of two paths of a pair, from the first step on.
+/// Squared least distance (m²) of two paths of a pair, from the present on.
 fn apart_squared(people: &[Hypotheses], pair: &Pair, first: &Path, second: &Path) -> f32 {
     let [from, to] = [pair.first, pair.second].map(|i| people[i].present);
     let offset = [0, 1].map(|axis| (to[axis] - from[axis]) as f32);
     let between = |t: usize| [0, 1].map(|axis| second[t][axis] + offset[axis] - first[t][axis]);
-    let squared = (1..HORIZON).map(|t| least_squared(between(t), between(t + 1)));
+    let squared = (0..HORIZON).map(|t| least_squared(between(t), between(t + 1)));
     squared.fold(f32::INFINITY, f32::min)
 }
 
