@@ -191,6 +191,10 @@ impl Futures {
                 }
             },
         );
+        // The weights sum to 1 up to rounding.
+        for probability in &mut probabilities {
+            *probability = probability.min(1.0);
+        }
         Occupancy {
             area: *area,
             time,

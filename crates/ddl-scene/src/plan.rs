@@ -3,6 +3,9 @@
 use crate::error::PlanError;
 use ddl_core::{HORIZON, Position, TIME_STEP, between};
 
+/// Largest coordinate (m), as of tracks.
+const FARTHEST: f64 = 1e7;
+
 /// A row of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanPoint {
@@ -37,6 +40,16 @@ impl Plan {
             let numbers = [("time", point.time), ("x", x), ("y", y), ("radius", point.radius)];
             if let Some(&(field, value)) = numbers.iter().find(|(_, number)| !number.is_finite()) {
                 let more = "";
+                return Err(PlanError::Number {
+                    row,
+                    field,
+                    value,
+                    more,
+                });
+            }
+            let mut places = numbers[1..].iter();
+            if let Some(&(field, value)) = places.find(|(_, number)| number.abs() > FARTHEST) {
+                let more = " of at most 1e7 m in size";
                 return Err(PlanError::Number {
                     row,
                     field,

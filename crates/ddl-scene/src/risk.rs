@@ -135,6 +135,10 @@ impl Futures {
                 }
             }
         }
+        // The weights sum to 1 up to rounding.
+        for probability in pedestrians.iter_mut().chain(&mut steps).chain(&mut until) {
+            *probability = probability.min(1.0);
+        }
         let total = until[HORIZON - 1];
         Risk {
             total,

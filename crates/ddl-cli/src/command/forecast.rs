@@ -12,7 +12,7 @@ mod stream;
 mod table;
 mod told_once;
 
-pub(crate) use arguments::{ForecastCommand, OutputFormat};
+pub(crate) use arguments::ForecastCommand;
 pub(crate) use kept_memory::file_stem;
 pub(crate) use moment::{SceneWindows, StreamState, WindowForecasts};
-pub(crate) use stream::{Answer, StreamOptions, answer};
+pub(crate) use stream::{Answer, OutputFormat, StreamOptions, answer};

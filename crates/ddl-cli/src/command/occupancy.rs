@@ -9,7 +9,8 @@ use ddl::scene::{Area, Futures, Occupancy};
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// Occupancy: grids of the probability that a cell is occupied, from the joint futures of the last moment
+/// Occupancy: grids of the probability that a cell is occupied, from the joint futures of every moment, or with --last
+/// of the last one
 #[derive(Debug, Args)]
 #[command(mut_arg("file", |file| file.required(true)), mut_arg("every", |every| every.long("moments-every")))]
 #[command(after_help = "Examples:\n  \
@@ -19,7 +20,7 @@ use std::path::PathBuf;
 pub(crate) struct OccupancyCommand {
     #[command(flatten)]
     stream: StreamOptions,
-    /// Side of a cell, metres
+    /// Side of a cell, metres; its number is of the middle of the cell, so cells should not be larger than a pedestrian
     #[arg(long, default_value_t = 0.1, allow_negative_numbers = true)]
     cell: f64,
     /// Time between two grids, seconds; the first is of the moment itself, the last of at most 4.8 s after it
@@ -55,6 +56,9 @@ fn corners(text: &str) -> Result<[f64; 4], String> {
     corners.ok_or_else(|| "an area is four numbers, such as -5,-5,5,5: lowest x and y, largest x and y (metres)".into())
 }
 
+/// The most numbers of the grids of one moment; they take up to some 1 GB.
+const MOST_NUMBERS: usize = 200_000_000;
+
 /// Metres around the paths in an area of their own.
 const MARGIN: f64 = 1.0;
 
@@ -66,6 +70,9 @@ impl OccupancyCommand {
                 bail!("npy and pgm are files: name their folder with --folder")
             }
             (Some(_), GridFormat::Jsonl) => bail!("jsonl goes to --output or to standard output: leave out --folder"),
+            (Some(_), _) if self.stream.output.is_some() => {
+                bail!("npy and pgm are written into --folder: leave out --output")
+            }
             (Some(folder), _) => {
                 std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
             }
@@ -144,6 +151,14 @@ impl Answer for OccupancyCommand {
         for moment in &moments {
             let futures = Futures::new(moment.window, moment.forecast.clone())?;
             let area = self.area_of(&futures)?;
+            let [width, height] = area.size();
+            if times.len() * width * height > MOST_NUMBERS {
+                bail!(
+                    "{} grids of {width} x {height} cells are too many at once: take larger cells (--cell), a smaller \
+                     area (--area) or fewer times (--every)",
+                    times.len()
+                );
+            }
             let grids = futures.occupancy(&area, &times, self.radius)?;
             let moment_number = moment.observed_until().rounded();
             if self.folder.is_some() {

@@ -39,12 +39,13 @@ pub(crate) struct RiskCommand {
     /// People do not see who follows the plan; otherwise they keep away as from a pedestrian
     #[arg(long)]
     unseen: bool,
-    /// Add the expected least distance, which takes some 10 ms for each plan
+    /// Add the expected least distance, which takes some 10 ms for each plan; not with --ego
     #[arg(long, conflicts_with = "ego")]
     nearest: bool,
-    /// Format: csv (one row per moment and plan, with the risk until each step) or jsonl (also of each pedestrian)
-    #[arg(long, value_enum, default_value = "csv")]
-    format: OutputFormat,
+    /// Format: csv (one row per moment and plan, with the pedestrian most at risk and the risk until each step) or
+    /// jsonl (also of each pedestrian) [default: jsonl for a file of that extension, else csv]
+    #[arg(long, value_enum)]
+    format: Option<OutputFormat>,
 }
 
 #[derive(Serialize)]
@@ -174,7 +175,7 @@ impl Answer for RiskCommand {
                 });
             }
         }
-        match self.format {
+        match self.stream.format(self.format) {
             OutputFormat::Csv => self.csv(&lines, state.is_first_text()),
             OutputFormat::Jsonl => {
                 state.is_first_text();

@@ -212,9 +212,9 @@ class Forecast:
                 raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
             row = int(found[0])
         if not rows.any():
-            count = len(plans)
+            count = len(_plans(plans))
             return Risk(np.zeros(count), np.zeros((count, len(self))), np.zeros((count, 12)), np.zeros((count, 12)))
-        total, people, steps, until = _core.risks(joint, [plan_rows(plan) for plan in plans], within, row, seen)
+        total, people, steps, until = _core.risks(joint, _plans(plans), within, row, seen)
         of_each = np.zeros((len(total), len(self)))
         of_each[:, rows] = people
         return Risk(total, of_each, steps, until)
@@ -222,7 +222,7 @@ class Forecast:
     def nearest(self, plans: Sequence[ArrayLike] | Floats) -> tuple[Floats, Floats]:
         """Expected least distance of plans from everybody (p,) and from each pedestrian (p, n), metres."""
         joint, rows = self._arrays()
-        nearest, people = _core.clearances(joint, [plan_rows(plan) for plan in plans])
+        nearest, people = _core.clearances(joint, _plans(plans))
         of_each = np.full((len(nearest), len(self)), np.nan)
         of_each[:, rows] = people
         return nearest, of_each
@@ -312,6 +312,13 @@ class Forecast:
         return draw(
             ax, self.past[shown], self.unseen[shown], self.paths[shown], self.weights[shown], goals, radii, level
         )
+
+
+def _plans(plans: Sequence[ArrayLike] | Floats) -> list[Floats]:
+    """The rows of each plan; one plan alone needs a list around it."""
+    if len(plans) > 0 and np.ndim(plans[0]) == 1:
+        raise ValueError("plans must be a list of plans, each of the shape (m, 3) or (m, 4): put one plan into a list")
+    return [plan_rows(plan) for plan in plans]
 
 
 def _ids(names: list[Any]) -> NDArray[Any]:

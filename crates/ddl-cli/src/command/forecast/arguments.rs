@@ -1,11 +1,11 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
 use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
-use crate::command::forecast::stream::{Answer, StreamOptions, answer};
+use crate::command::forecast::stream::{Answer, OutputFormat, StreamOptions, answer};
 use crate::command::forecast::{json_lines, table};
 use crate::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use anyhow::bail;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use ddl::data::{Clock, Window};
 use ddl::{Ddl, Forecaster as _};
 
@@ -59,12 +59,6 @@ pub(crate) struct ForecastCommand {
     region: Vec<f64>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum OutputFormat {
-    Csv,
-    Jsonl,
-}
-
 impl ForecastCommand {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let mut levels = self.region.iter().enumerate();
@@ -72,16 +66,6 @@ impl ForecastCommand {
             bail!("--region names {twice} twice; name each probability once");
         }
         answer(&self)
-    }
-
-    fn format(&self) -> OutputFormat {
-        let extension = self.stream.output.as_ref().and_then(|path| path.extension());
-        self.format
-            .unwrap_or(if extension.is_some_and(|it| it.eq_ignore_ascii_case("jsonl")) {
-                OutputFormat::Jsonl
-            } else {
-                OutputFormat::Csv
-            })
     }
 
     fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<WindowForecasts> {
@@ -128,7 +112,7 @@ impl Answer for ForecastCommand {
         warn_of_violation(&moments, state);
         self.stream.tell_of_unfamiliar(&moments, state);
         let headed = state.is_first_text();
-        match self.format() {
+        match self.stream.format(self.format) {
             OutputFormat::Csv => table::csv(&moments, headed, &self.region, self.joint),
             OutputFormat::Jsonl if self.joint => json_lines::joint_lines(&moments, &self.region),
             OutputFormat::Jsonl => json_lines::json_lines(&moments, &self.region),

@@ -8,7 +8,7 @@ use crate::output::{file_of, write_parts};
 use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use anyhow::bail;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
 use ddl::{Ddl, DdlError};
 use std::io::IsTerminal as _;
@@ -48,6 +48,12 @@ pub(crate) struct StreamOptions {
     pub(super) latest: bool,
     #[command(flatten)]
     pub(super) machine: Machine,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum OutputFormat {
+    Csv,
+    Jsonl,
 }
 
 /// A command that answers moments with text.
@@ -104,6 +110,16 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
 impl StreamOptions {
     pub(super) fn load(&self) -> anyhow::Result<Ddl> {
         Ok(self.model.load(self.machine.device)?)
+    }
+
+    /// The format that was asked for, or that of the extension of the output.
+    pub(crate) fn format(&self, asked: Option<OutputFormat>) -> OutputFormat {
+        let extension = self.output.as_ref().and_then(|path| path.extension());
+        asked.unwrap_or(if extension.is_some_and(|it| it.eq_ignore_ascii_case("jsonl")) {
+            OutputFormat::Jsonl
+        } else {
+            OutputFormat::Csv
+        })
     }
 
     /// Counts motions unlike the training motions; in a live stream it warns at the first.
