@@ -3,9 +3,9 @@
     python energy.py MODEL:FOLDER=FPS ...
 
 maximises the conditional likelihood of the true path of each pedestrian, given the true paths of the others, under the
-hypotheses of a model that was not trained there. It prints the conflict energies, the strengths of walking together, and
-what each folder gains when it is left out. crates/ddl-scene/src/energy.json holds such constants; the folders were dut,
-citr, edinburgh, juelich, thor and sdd, each forecast by the model ``hotel``.
+hypotheses of a model that was not trained there. It prints the conflict energies, the strengths of walking together,
+and what each folder gains when it is left out. crates/ddl-scene/src/energy.json holds such constants; the folders were
+dut, citr, edinburgh, juelich, thor and sdd, each forecast by the model ``hotel``.
 """
 
 import sys
