@@ -27,9 +27,8 @@ use std::ffi::OsString;
     disable_help_subcommand = true,
     help_template = "{about}\n\n{usage-heading} {usage}\n\n{subcommands}{after-help}",
     after_help = "Trained models come with the program: `ddl forecast tracks.csv` works at once.\n\
-    `ddl COMMAND --help` lists options. Exit codes: 0 success (also when the\n\
-    reader closes the output), 1 failure, 2 wrong arguments, 130 interrupted (a\n\
-    training is saved: the same command resumes it)."
+    `ddl COMMAND --help` lists options. Exit codes: 0 success, 1 failure, 2 wrong\n\
+    arguments, 130 interrupted (the same command resumes a training)."
 )]
 struct Cli {
     #[command(subcommand)]

@@ -9,8 +9,9 @@ use ddl::scene::{Area, Futures, Occupancy};
 use serde_json::Value;
 use std::path::PathBuf;
 
-/// Occupancy: grids of the probability that a cell is occupied, from the joint futures of every moment, or with --last
-/// of the last one
+/// Compute grids of the probability that somebody is there
+///
+/// From the joint futures of every moment, or with --last of the last one.
 #[derive(Debug, Args)]
 #[command(mut_arg("file", |file| file.required(true)), mut_arg("every", |every| every.long("moments-every")))]
 #[command(after_help = "Examples:\n  \

@@ -13,7 +13,9 @@ use ddl::scene::{Clearance, Futures, Plan};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Risk of plans: how likely somebody comes close, from the joint futures of every moment
+/// Compute how likely somebody comes close to a plan
+///
+/// From the joint futures of every moment.
 #[derive(Debug, Args)]
 #[command(mut_arg("file", |file| file.required(true)))]
 #[command(after_help = "Examples:\n  \
