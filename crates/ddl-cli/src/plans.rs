@@ -103,9 +103,8 @@ pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
     for column in ["t", "x", "y"] {
         if !headers.iter().any(|header| header == column) {
             bail!(
-                "{name}, line 1: no column `{column}`; a plan has the columns t,x,y (seconds after the moment, metres),
-  \
-                 and may have radius and plan"
+                "{name}, line 1: no column `{column}`; a plan has the columns t,x,y (seconds after the moment, \
+                 metres), and may have radius and plan"
             );
         }
     }

@@ -22,9 +22,8 @@ type JointArrays<'py> = (
 pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
     if rows.shape()[1] != 4 {
         return Err(PyValueError::new_err(format!(
-            "a plan must have the shape (m, 3) or (m, 4): t in seconds after the moment, x, y and radius in metres;
-  found \
-             {:?}",
+            "a plan must have the shape (m, 3) or (m, 4): t in seconds after the moment, x, y and radius in \
+             metres; found {:?}",
             rows.shape()
         )));
     }
