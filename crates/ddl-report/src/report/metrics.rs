@@ -34,8 +34,8 @@ const FURTHER: [MetricColumn; 11] = [
 
 pub(super) const JOINT_LEGEND: &str = "Futures of scenes, mean over the folds named. minADE, minFDE: each pedestrian's \
     own best future; by window: JADE and JFDE as means over windows, not pedestrians; %: pedestrians whose centres \
-    come closer than 0.4 m to those of another in the same future, mean of all futures, in that of JADE, and in the true \
-    one. CR_mean, CR_JADE and CR of the truth as in Joint Metrics Matter: closer than \
+    come closer than 0.4 m to those of another in the same future, mean of all futures, in that of JADE, and in the \
+    true one. CR_mean, CR_JADE and CR of the truth as in Joint Metrics Matter: closer than \
     0.2 m, share of the pedestrians of a window, mean over windows. People who walk together touch: the true share is \
     the aim, not 0.";
 
