@@ -13,7 +13,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Args)]
 pub(crate) struct GivenPlanOptions {
     /// With --joint: csv of the plan of a robot, `t,x,y` in seconds after the moment and metres; the pedestrians
-    /// respond to it. It is read again for every moment, so that another program can replace it
+    /// respond to it. It is read again while a stream runs, so that another program can replace it, by renaming
+    /// a whole file
     #[arg(long, value_name = "FILE", requires = "joint", conflicts_with = "certificate")]
     plan: Option<PathBuf>,
     /// With --plan: the pedestrian of the tracks who follows the plan [default: none of them]
@@ -46,8 +47,8 @@ pub(crate) fn tell_doubts_of_ego(ego: Option<&str>, plans: &[&Plan], window: &Wi
         state.tell_once(
             "no ego",
             format_args!(
-                "note: pedestrian {name} of --ego is not in every moment; there nobody of the tracks follows the plan \
-                 (told once)"
+                "note: pedestrian {name} of --ego is missing in some moments; in these the plan is taken to be that of \
+                 somebody who is not in the tracks (told once)"
             ),
         );
         return;

@@ -35,17 +35,15 @@ struct Avoidance {
     /// Metres, ascending.
     within: [f64; 4],
     strangers: [f64; 4],
-    /// Those who walk with whoever follows the plan.
+    /// Members of the group of the pedestrian who follows the plan.
     companions: [f64; 4],
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Conflict {
-    /// Distance (m) below which two people collide.
+    /// Distance (m) below which two people collide; for two who are closer already, their present distance.
     near: f64,
-    /// People who are closer than that already collide below this share of their present distance.
-    share_of_present: f64,
     /// Energies of pairs that do not walk together at 0, 1/2, 1, 3/2 and 2 times the distance.
     alone: [f32; 5],
     /// Energies of pairs that walk together.
@@ -112,7 +110,7 @@ impl Energy {
         2.5 * self.conflict.near
     }
 
-    /// Distance (m) beyond which nobody walks together.
+    /// Mean distance (m) from which two pedestrians do not count as walking together.
     pub(crate) fn together_within(&self) -> f64 {
         self.together.distances[2]
     }
@@ -132,10 +130,7 @@ impl Energy {
 
     /// The energy of a pair at this present distance (m), whose [strength](Self::strength) is divided among partners.
     pub(crate) fn of_pair(&self, present_distance: f64, strength: f32, partners: f32) -> PairEnergy {
-        let near = self
-            .conflict
-            .near
-            .min(self.conflict.share_of_present * present_distance);
+        let near = self.conflict.near.min(present_distance);
         PairEnergy {
             near: (near as f32).max(0.1),
             conflict: if strength > 0.0 {

@@ -1,4 +1,4 @@
-//! The joint futures of a scene: where everybody is in each of them.
+//! The joint futures of a scene: the position of each pedestrian in each of them, at any time.
 
 use crate::error::SceneError;
 use crate::groups::groups;

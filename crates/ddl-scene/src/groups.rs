@@ -2,6 +2,7 @@
 
 use ddl_core::{OBSERVED, Position, TIME_STEP, Window, distance};
 use ddl_data::SpatialIndex;
+use std::collections::BTreeMap;
 
 /// Mean distance over the observation below which two may walk together, metres.
 const CLOSE: f64 = 2.2;
@@ -28,19 +29,28 @@ pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
 pub fn groups(window: &Window) -> Vec<Vec<usize>> {
     let present = window.positions_at(OBSERVED - 1);
     let index = SpatialIndex::new(&present);
-    let mut group: Vec<usize> = (0..window.len()).collect();
-    for i in 0..window.len() {
-        for j in index.nearest_others(i, present[i], MOST_NEIGHBOURS) {
+    let mut links: Vec<usize> = (0..window.len()).collect();
+    for (i, &place) in present.iter().enumerate() {
+        for j in index.nearest_others(i, place, MOST_NEIGHBOURS) {
             let [apart, velocities] = closeness(window.observed(i), window.observed(j));
-            if apart < CLOSE && velocities < ALIKE && group[i] != group[j] {
-                let (kept, joined) = (group[i].min(group[j]), group[i].max(group[j]));
-                for member in group.iter_mut().filter(|member| **member == joined) {
-                    *member = kept;
-                }
+            if apart < CLOSE && velocities < ALIKE {
+                let (a, b) = (first_of(&mut links, i), first_of(&mut links, j));
+                links[a.max(b)] = a.min(b);
             }
         }
     }
-    let members = |first: usize| (0..window.len()).filter(|&i| group[i] == first).collect::<Vec<_>>();
-    let firsts = (0..window.len()).filter(|&i| group[i] == i);
-    firsts.map(members).filter(|members| members.len() > 1).collect()
+    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for i in 0..window.len() {
+        groups.entry(first_of(&mut links, i)).or_default().push(i);
+    }
+    groups.into_values().filter(|members| members.len() > 1).collect()
+}
+
+/// The first member of the group of pedestrian `i`; every link leads to an earlier member, and is shortened on the way.
+fn first_of(links: &mut [usize], mut i: usize) -> usize {
+    while links[i] != i {
+        links[i] = links[links[i]];
+        i = links[i];
+    }
+    i
 }

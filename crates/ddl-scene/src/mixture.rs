@@ -10,8 +10,6 @@ use ddl_core::{Forecast, HORIZON, Position, Spread, TIME_STEP, Window};
 
 /// Samples of a scene.
 const SAMPLES: usize = 300;
-/// Gibbs sweeps of each sample.
-const SWEEPS: usize = 1;
 
 /// K joint futures of N pedestrians with H hypotheses: in future k pedestrian i follows a mixture of its hypotheses.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +32,7 @@ impl JointMixture {
     pub fn of(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
         let hypotheses = forecast.hypotheses();
         assert!(
-            window.len() == forecast.pedestrians() && hypotheses <= 256,
+            window.len() == forecast.pedestrians() && hypotheses <= Self::MOST_HYPOTHESES,
             "a forecast of this window"
         );
         let scene = Scene::new(window, forecast, plan, ego);
@@ -138,7 +136,7 @@ impl Scene {
 
     /// The futures, with the pedestrians in the order of the scene.
     fn mixture(&self, hypotheses: usize) -> JointMixture {
-        let chosen = sampling::samples(&self.people, &self.pairs, &self.seeds, SAMPLES, SWEEPS);
+        let chosen = sampling::samples(&self.people, &self.pairs, &self.seeds, SAMPLES);
         let (labels, sizes) = by_size(quantisation::clusters(&self.people, &chosen, hypotheses), hypotheses);
         let row = hypotheses * hypotheses;
         let mut shares = vec![0.0; self.people.len() * row];
@@ -146,7 +144,8 @@ impl Scene {
             for (&label, &hypothesis) in labels.iter().zip(chosen) {
                 shares[label * hypotheses + usize::from(hypothesis)] += 1.0 / sizes[label] as f32;
             }
-            // Fewer different samples than futures: a future without weight is hypothesis k of everybody.
+            // There are fewer different samples than futures. The futures that are left get the weight 0, and every
+            // pedestrian follows its hypothesis k in them.
             for k in (0..hypotheses).filter(|&k| sizes[k] == 0) {
                 shares[k * hypotheses + k] = 1.0;
             }

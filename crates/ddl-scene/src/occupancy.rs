@@ -203,7 +203,8 @@ impl Futures {
     }
 }
 
-/// Adds one future to a row. `free`, the probability that nobody is in a cell, is 1 everywhere, before and after.
+/// Adds one future to a row of cells. `free` is a buffer for the probabilities that a cell is empty; it must hold 1 in
+/// every entry, and holds 1 again afterwards.
 fn add_future<'a>(
     area: &Area,
     row: usize,

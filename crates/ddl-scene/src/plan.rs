@@ -17,8 +17,8 @@ pub struct PlanPoint {
     pub radius: f64,
 }
 
-/// A path over time, with straight lines between its rows. Before its first row and after its last one whoever follows
-/// it stands there.
+/// A path over time, with straight lines between its rows. Before its first time it is at the first
+/// position, after its last time at the last position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     points: Vec<PlanPoint>,

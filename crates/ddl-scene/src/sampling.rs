@@ -1,4 +1,7 @@
-//! Samples of scenes: a hypothesis for each pedestrian, drawn from the energy by Gibbs sweeps.
+//! Samples of scenes: a hypothesis for each pedestrian, drawn by one Gibbs sweep.
+//!
+//! It starts from independent draws, so the samples follow the energy approximately. More sweeps changed the errors of
+//! the best future by less than 1 %.
 
 use crate::hypotheses::Hypotheses;
 use crate::pairs::{Pair, neighbours};
@@ -11,13 +14,7 @@ const BETWEEN_RESCALES: usize = 4;
 /// The hypothesis of each pedestrian in each sample, `[N][S]`.
 ///
 /// Each pedestrian has its own random numbers, from `seeds`, so that a scene in another order gives the same samples.
-pub(crate) fn samples(
-    people: &[Hypotheses],
-    pairs: &[Pair],
-    seeds: &[u64],
-    count: usize,
-    sweeps: usize,
-) -> Vec<Vec<u8>> {
+pub(crate) fn samples(people: &[Hypotheses], pairs: &[Pair], seeds: &[u64], count: usize) -> Vec<Vec<u8>> {
     let mut randoms: Vec<ChaCha8Rng> = seeds.iter().map(|seed| ChaCha8Rng::seed_from_u64(*seed)).collect();
     let mut chosen: Vec<Vec<u8>> = people
         .iter()
@@ -26,31 +23,29 @@ pub(crate) fn samples(
         .collect();
     let neighbours = neighbours(people.len(), pairs);
     let mut product = Vec::new();
-    for _ in 0..sweeps {
-        for (i, one) in people.iter().enumerate() {
-            if neighbours[i].is_empty() {
-                continue;
-            }
-            let mut own = std::mem::take(&mut chosen[i]);
-            for (s, hypothesis) in own.iter_mut().enumerate() {
-                product.clone_from(&one.weights);
-                for (n, &(pair, other)) in neighbours[i].iter().enumerate() {
-                    let pair = &pairs[pair];
-                    let factors = pair.factors(pair.first == i, usize::from(chosen[other][s]), one.count());
-                    for (value, factor) in product.iter_mut().zip(factors) {
-                        *value *= factor;
-                    }
-                    if n % BETWEEN_RESCALES == BETWEEN_RESCALES - 1 {
-                        let largest = product.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
-                        for value in &mut product {
-                            *value /= largest;
-                        }
+    for (i, one) in people.iter().enumerate() {
+        if neighbours[i].is_empty() {
+            continue;
+        }
+        let mut own = std::mem::take(&mut chosen[i]);
+        for (s, hypothesis) in own.iter_mut().enumerate() {
+            product.clone_from(&one.weights);
+            for (n, &(pair, other)) in neighbours[i].iter().enumerate() {
+                let pair = &pairs[pair];
+                let factors = pair.factors(pair.first == i, usize::from(chosen[other][s]), one.count());
+                for (value, factor) in product.iter_mut().zip(factors) {
+                    *value *= factor;
+                }
+                if n % BETWEEN_RESCALES == BETWEEN_RESCALES - 1 {
+                    let largest = product.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+                    for value in &mut product {
+                        *value /= largest;
                     }
                 }
-                *hypothesis = draw(&product, randoms[i].random());
             }
-            chosen[i] = own;
+            *hypothesis = draw(&product, randoms[i].random());
         }
+        chosen[i] = own;
     }
     chosen
 }

@@ -1,7 +1,7 @@
 //! Laws of joint futures.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_core::{Forecast, HORIZON, PedestrianId, Position, Window, distance};
+use ddl_core::{Forecast, HORIZON, PedestrianId, Position, Window, between, distance};
 use ddl_scene::{JointMixture, Plan, PlanPoint, groups};
 use proptest::{collection::vec, prelude::*};
 
@@ -62,11 +62,16 @@ fn marginal(mixture: &JointMixture, i: usize) -> Vec<f64> {
     (0..K).map(|h| (0..K).map(|k| of_future(k, h)).sum()).collect()
 }
 
+/// The least distance of two paths at their steps and at four places between any two of them.
 fn least(a: &[Position], b: &[Position]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(p, q)| distance(*p, *q))
-        .fold(f64::INFINITY, f64::min)
+    let places = |path: &[Position]| -> Vec<Position> {
+        let pairs = path.windows(2);
+        pairs
+            .flat_map(|pair| (0..=5).map(|part| between(pair[0], pair[1], f64::from(part) / 5.0)))
+            .collect()
+    };
+    let pairs = places(a).into_iter().zip(places(b));
+    pairs.map(|(p, q)| distance(p, q)).fold(f64::INFINITY, f64::min)
 }
 
 fn crowd() -> impl Strategy<Value = Vec<Person>> {

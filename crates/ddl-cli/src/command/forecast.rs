@@ -14,5 +14,5 @@ mod told_once;
 
 pub(crate) use arguments::ForecastCommand;
 pub(crate) use kept_memory::file_stem;
-pub(crate) use moment::{SceneWindows, StreamState, WindowForecasts};
+pub(crate) use moment::{Moment, StreamState};
 pub(crate) use stream::{Answer, OutputFormat, StreamOptions, answer};

@@ -1,17 +1,16 @@
 //! `ddl occupancy`: where somebody will be.
 
-use crate::command::forecast::{Answer, SceneWindows, StreamOptions, StreamState, WindowForecasts, answer, file_stem};
+use crate::command::forecast::{Answer, Moment, StreamOptions, StreamState, answer, file_stem};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use ddl::Ddl;
-use ddl::data::{Clock, write_atomically};
+use ddl::data::write_atomically;
 use ddl::scene::{Area, Futures, Occupancy};
 use serde_json::Value;
 use std::path::PathBuf;
 
 /// Compute grids of the probability that somebody is there
 ///
-/// From the joint futures of every moment, or with --last of the last one.
+/// From the joint futures of every moment, or with --last of the last one. Only pedestrians who are forecast count.
 #[derive(Debug, Args)]
 #[command(mut_arg("file", |file| file.required(true)), mut_arg("every", |every| every.long("moments-every")))]
 #[command(after_help = "Examples:\n  \
@@ -37,8 +36,7 @@ pub(crate) struct OccupancyCommand {
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
     /// Format: jsonl (one message of the layout of `nav_msgs/OccupancyGrid` for each time), npy (one array of times,
-    /// rows and columns for each moment) or pgm (one image for each time), both with
-    /// a yaml of origin and resolution, as map servers read it
+    /// rows and columns for each moment) or pgm (one image for each time), both with a yaml of origin and resolution
     /// [default: jsonl; with --folder npy]
     #[arg(long, value_enum)]
     format: Option<GridFormat>,
@@ -57,7 +55,7 @@ fn corners(text: &str) -> Result<[f64; 4], String> {
     corners.ok_or_else(|| "an area is four numbers, such as -5,-5,5,5: lowest x and y, largest x and y (metres)".into())
 }
 
-/// The most numbers of the grids of one moment; they take up to some 1 GB.
+/// The most numbers of the grids of one moment; an array of numpy of so many takes 0.8 GB.
 const MOST_NUMBERS: usize = 200_000_000;
 
 /// Metres around the paths in an area of their own.
@@ -136,20 +134,11 @@ impl Answer for OccupancyCommand {
         &self.stream
     }
 
-    fn text(
-        &self,
-        model: &Ddl,
-        windows: SceneWindows<'_>,
-        clock: Clock,
-        state: &mut StreamState,
-    ) -> anyhow::Result<String> {
-        let forecasts = WindowForecasts::Plain(model.forecast_scenes(windows.windows, None)?);
-        let moments = windows.moments(&forecasts, clock);
-        self.stream.tell_of_unfamiliar(&moments, state);
+    fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         state.is_first_text();
         let times = Occupancy::every(self.every)?;
         let mut text = String::new();
-        for moment in &moments {
+        for moment in moments {
             let futures = Futures::new(moment.window, moment.forecast.clone())?;
             let area = self.area_of(&futures)?;
             let [width, height] = area.size();

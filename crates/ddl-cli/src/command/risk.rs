@@ -1,21 +1,18 @@
 //! `ddl risk`: how likely somebody comes close to a plan.
 
-use crate::command::forecast::{
-    Answer, OutputFormat, SceneWindows, StreamOptions, StreamState, WindowForecasts, answer,
-};
+use crate::command::forecast::{Answer, Moment, OutputFormat, StreamOptions, StreamState, answer};
 use crate::output::{table_metres, table_share};
 use crate::plans::{NamedPlan, read_plans, tell_doubts_of_ego};
 use anyhow::Context as _;
 use clap::Args;
-use ddl::Ddl;
-use ddl::data::{Clock, FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
+use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
 use ddl::scene::{Clearance, Futures, Plan};
 use serde::Serialize;
 use std::path::PathBuf;
 
 /// Compute how likely somebody comes close to a plan
 ///
-/// From the joint futures of every moment.
+/// From the joint futures of every moment. Only pedestrians who are forecast count.
 #[derive(Debug, Args)]
 #[command(mut_arg("file", |file| file.required(true)))]
 #[command(after_help = "Examples:\n  \
@@ -28,8 +25,8 @@ pub(crate) struct RiskCommand {
     /// Plans: csv of `t,x,y` in seconds after the moment and metres, and where there are `radius` (metres) and `plan`,
     /// the name of one of several candidates
     ///
-    /// It is read again for every moment, so that another program can replace it (by renaming a whole file). Before its
-    /// first row and after its last one whoever follows a plan stands there.
+    /// The file is read again while a stream runs, so that another program can replace it, by renaming a whole file.
+    /// Until its first time a plan is at its first position, after its last time at its last position.
     #[arg(long, value_name = "FILE")]
     plan: PathBuf,
     /// Distance from the edge of the plan that counts as close, metres
@@ -129,21 +126,12 @@ impl Answer for RiskCommand {
         &self.stream
     }
 
-    fn text(
-        &self,
-        model: &Ddl,
-        windows: SceneWindows<'_>,
-        clock: Clock,
-        state: &mut StreamState,
-    ) -> anyhow::Result<String> {
+    fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         let named = read_plans(&self.plan)?;
         let plans: Vec<Plan> = named.iter().map(|named| named.plan.clone()).collect();
-        let forecasts = WindowForecasts::Plain(model.forecast_scenes(windows.windows, None)?);
-        let moments = windows.moments(&forecasts, clock);
-        self.stream.tell_of_unfamiliar(&moments, state);
+        let all: Vec<&Plan> = plans.iter().collect();
         let mut lines = Vec::new();
-        for moment in &moments {
-            let all: Vec<&Plan> = plans.iter().collect();
+        for moment in moments {
             tell_doubts_of_ego(self.ego.as_deref(), &all, moment.window, state);
             let ego = self.ego(moment.window);
             let futures = Futures::new(moment.window, moment.forecast.clone())?;

@@ -196,7 +196,8 @@ class Forecast:
         ----------
         plans
             (p, m, 3) or a sequence of (m, 3): rows of t in seconds from now, x and y in metres; with a fourth column,
-            the radius of whoever follows the plan. Before its first row and after its last one it stands there.
+            the radius of whoever follows the plan. Before its first time it is at the first position, after its
+            last time at the last position.
         within
             Distance from the edge of a plan, metres.
         ego

@@ -6,7 +6,7 @@
 use crate::risk::probability;
 use std::f64::consts::PI;
 
-/// Below this mass nobody is there.
+/// A cell with a smaller mass than this is left out of the sum.
 const LEAST: f64 = 1e-4;
 /// Points of the integral over half an edge, even.
 const POINTS: usize = 24;

@@ -1,12 +1,11 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
-use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
+use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts};
 use crate::command::forecast::stream::{Answer, OutputFormat, StreamOptions, answer};
 use crate::command::forecast::{json_lines, table};
 use crate::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use anyhow::bail;
 use clap::Args;
-use ddl::data::{Clock, Window};
 use ddl::{Ddl, Forecaster as _};
 
 /// Forecast the next 4.8 s of your own tracks
@@ -67,22 +66,6 @@ impl ForecastCommand {
         }
         answer(&self)
     }
-
-    fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<WindowForecasts> {
-        if self.joint {
-            return Ok(if self.certificate {
-                WindowForecasts::Certified(model.forecast_scenes_certified(windows)?)
-            } else {
-                WindowForecasts::Plain(model.forecast_scenes(windows, self.given.read()?.as_ref())?)
-            });
-        }
-        Ok(match (self.certificate, self.one) {
-            (false, false) => WindowForecasts::Plain(model.forecast_all(windows)?),
-            (false, true) => WindowForecasts::Plain(model.forecast_central(windows)?),
-            (true, false) => WindowForecasts::Certified(model.forecast_certified(windows)?),
-            (true, true) => WindowForecasts::Certified(model.forecast_central_certified(windows)?),
-        })
-    }
 }
 
 impl Answer for ForecastCommand {
@@ -90,32 +73,41 @@ impl Answer for ForecastCommand {
         &self.stream
     }
 
-    fn text(
+    fn forecasts(
         &self,
         model: &Ddl,
         windows: SceneWindows<'_>,
-        clock: Clock,
         state: &mut StreamState,
-    ) -> anyhow::Result<String> {
-        if let Some(given) = self.given.read()? {
-            let ego = self.given.ego.as_deref();
-            let each = windows.windows.iter();
-            each.for_each(|window| tell_doubts_of_ego(ego, &[&given.plan], window, state));
+    ) -> anyhow::Result<WindowForecasts> {
+        let given = self.given.read()?;
+        if let Some(given) = &given {
+            for window in windows.windows {
+                tell_doubts_of_ego(self.given.ego.as_deref(), &[&given.plan], window, state);
+            }
         }
-        let mut forecasts = self.forecasts(model, windows.windows)?;
+        let some = windows.windows;
+        let mut forecasts = match (self.joint, self.certificate, self.one) {
+            (true, true, _) => WindowForecasts::Certified(model.forecast_scenes_certified(some)?),
+            (true, false, _) => WindowForecasts::Plain(model.forecast_scenes(some, given.as_ref())?),
+            (false, false, false) => WindowForecasts::Plain(model.forecast_all(some)?),
+            (false, false, true) => WindowForecasts::Plain(model.forecast_central(some)?),
+            (false, true, false) => WindowForecasts::Certified(model.forecast_certified(some)?),
+            (false, true, true) => WindowForecasts::Certified(model.forecast_central_certified(some)?),
+        };
         if !self.region.is_empty() && !self.joint {
             for (i, forecast) in forecasts.each_mut().into_iter().enumerate() {
                 *forecast = state.adapted(windows, i, forecast.clone());
             }
         }
-        let moments = windows.moments(&forecasts, clock);
-        warn_of_violation(&moments, state);
-        self.stream.tell_of_unfamiliar(&moments, state);
+        Ok(forecasts)
+    }
+
+    fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         let headed = state.is_first_text();
         match self.stream.format(self.format) {
-            OutputFormat::Csv => table::csv(&moments, headed, &self.region, self.joint),
-            OutputFormat::Jsonl if self.joint => json_lines::joint_lines(&moments, &self.region),
-            OutputFormat::Jsonl => json_lines::json_lines(&moments, &self.region),
+            OutputFormat::Csv => table::csv(moments, headed, &self.region, self.joint),
+            OutputFormat::Jsonl if self.joint => json_lines::joint_lines(moments, &self.region),
+            OutputFormat::Jsonl => json_lines::json_lines(moments, &self.region),
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime};
 use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::moment::{SceneWindows, StreamState};
-use crate::command::forecast::stream::{Answer, StreamOptions};
+use crate::command::forecast::stream::{Answer, StreamOptions, text_of};
 use crate::command::forecast::told_once::ToldOnce;
 use crate::interrupt::Interrupt;
 use crate::output::file_of;
@@ -364,8 +364,8 @@ impl Stream<'_> {
 
     fn text(&mut self, windows: &[Window], scenes: &[Option<SceneName>]) -> anyhow::Result<String> {
         let windows = SceneWindows { windows, scenes };
-        self.command
-            .text(self.model, windows, self.clock.unwrap_or(Clock::STEPS), &mut self.state)
+        let clock = self.clock.unwrap_or(Clock::STEPS);
+        text_of(self.command, self.model, windows, clock, &mut self.state)
     }
 
     /// Leaves out a failed forecast of a named scene. Before the first forecast it is an error, because the arguments

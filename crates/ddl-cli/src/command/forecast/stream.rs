@@ -1,7 +1,7 @@
 //! The commands that answer every moment of a file of tracks or of live tracks.
 
 use crate::command::forecast::live;
-use crate::command::forecast::moment::{Moment, SceneWindows, StreamState};
+use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::{Machine, ModelChoice};
 use crate::interrupt::Interrupt;
 use crate::output::{file_of, write_parts};
@@ -60,15 +60,39 @@ pub(crate) enum OutputFormat {
 pub(crate) trait Answer {
     fn stream(&self) -> &StreamOptions;
 
-    /// The answers of the windows in order of time. The first text starts with the names of the columns, if the format
-    /// has any.
-    fn text(
+    /// The forecasts that its answers need: the joint futures of each window.
+    fn forecasts(
         &self,
         model: &Ddl,
         windows: SceneWindows<'_>,
-        clock: Clock,
-        state: &mut StreamState,
-    ) -> anyhow::Result<String>;
+        _state: &mut StreamState,
+    ) -> anyhow::Result<WindowForecasts> {
+        Ok(WindowForecasts::Plain(model.forecast_scenes(windows.windows, None)?))
+    }
+
+    /// The answers of the moments in order of time. The first text starts with the names of the columns, if the format
+    /// has any.
+    fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String>;
+}
+
+/// The answers of a command for these windows.
+pub(super) fn text_of(
+    command: &dyn Answer,
+    model: &Ddl,
+    windows: SceneWindows<'_>,
+    clock: Clock,
+    state: &mut StreamState,
+) -> anyhow::Result<String> {
+    let forecasts = command.forecasts(model, windows, state)?;
+    let moments = windows.moments(&forecasts, clock);
+    warn_of_violation(&moments, state);
+    state.unfamiliar.add(&moments);
+    if command.stream().tracks.are_live() {
+        state
+            .unfamiliar
+            .warn("; this warning appears once, but each forecast has its familiarity");
+    }
+    command.text(&moments, state)
 }
 
 /// Answers every moment of the tracks.
@@ -95,7 +119,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
             bail!(DdlError::Interrupted);
         }
         let windows = SceneWindows { windows, scenes: &[] };
-        let text = command.text(&model, windows, observed.clock, &mut state)?;
+        let text = text_of(command, &model, windows, observed.clock, &mut state)?;
         bytes += text.len();
         lines += text.lines().count();
         Ok(text)
@@ -120,16 +144,6 @@ impl StreamOptions {
         } else {
             OutputFormat::Csv
         })
-    }
-
-    /// Counts motions unlike the training motions; in a live stream it warns at the first.
-    pub(crate) fn tell_of_unfamiliar(&self, moments: &[Moment<'_>], state: &mut StreamState) {
-        state.unfamiliar.add(moments);
-        if self.tracks.are_live() {
-            state
-                .unfamiliar
-                .warn("; this warning appears once, but each forecast has its familiarity");
-        }
     }
 
     /// Notes how to reduce large output: thousands of lines on a terminal, or a large file.
