@@ -100,7 +100,10 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     let stream = command.stream();
     stream.machine.prepare_for_little()?;
     if stream.memory.is_some() && !stream.tracks.are_live() {
-        bail!("--memory is for live tracks from standard input: give `-` instead of a file");
+        bail!(
+            "--memory is for live tracks from standard input, as in `ddl forecast - --memory FILE`: give \
+             `-` for the file"
+        );
     }
     if stream.latest && !stream.tracks.are_live() {
         bail!("--latest is for tracks as they come; write them to standard input, and give `-` instead of a file");
