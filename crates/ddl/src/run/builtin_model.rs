@@ -14,19 +14,25 @@ pub enum BuiltinModel {
     #[default]
     World,
     /// Trained without the scene `eth`.
+    #[cfg(feature = "folds")]
     Eth,
     /// Trained without the scene `hotel`.
+    #[cfg(feature = "folds")]
     Hotel,
     /// Trained without the scenes `univ`.
+    #[cfg(feature = "folds")]
     Univ,
     /// Trained without the scene `zara1`.
+    #[cfg(feature = "folds")]
     Zara1,
     /// Trained without the scene `zara2`.
+    #[cfg(feature = "folds")]
     Zara2,
 }
 
 impl BuiltinModel {
     /// All of them.
+    #[cfg(feature = "folds")]
     pub const ALL: [Self; 6] = [
         Self::World,
         Self::Eth,
@@ -35,36 +41,38 @@ impl BuiltinModel {
         Self::Zara1,
         Self::Zara2,
     ];
+    /// All of them: the one for use.
+    #[cfg(not(feature = "folds"))]
+    pub const ALL: [Self; 1] = [Self::World];
 
     /// Those of the benchmark.
+    #[cfg(feature = "folds")]
     pub const OF_FOLDS: [Self; 5] = [Self::Eth, Self::Hotel, Self::Univ, Self::Zara1, Self::Zara2];
 
     /// Its name: `world`, or the scene that it was trained without.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::World => "world",
-            Self::Eth => "eth",
-            Self::Hotel => "hotel",
-            Self::Univ => "univ",
-            Self::Zara1 => "zara1",
-            Self::Zara2 => "zara2",
-        }
+        PACKED[self as usize].0
     }
 
     pub(crate) fn bytes(self) -> &'static [u8] {
-        BYTES[self as usize]
+        PACKED[self as usize].1
     }
 }
 
-/// The packed models, in the order of the variants. A static, so that the program holds each model once.
-static BYTES: [&[u8]; 6] = [
-    include_bytes!("../../models/world.safetensors"),
-    include_bytes!("../../models/eth.safetensors"),
-    include_bytes!("../../models/hotel.safetensors"),
-    include_bytes!("../../models/univ.safetensors"),
-    include_bytes!("../../models/zara1.safetensors"),
-    include_bytes!("../../models/zara2.safetensors"),
+/// The names and the packed models, in the order of the variants. A static, so that the program holds each model once.
+static PACKED: [(&str, &[u8]); BuiltinModel::ALL.len()] = [
+    ("world", include_bytes!("../../models/world.safetensors")),
+    #[cfg(feature = "folds")]
+    ("eth", include_bytes!("../../models/eth.safetensors")),
+    #[cfg(feature = "folds")]
+    ("hotel", include_bytes!("../../models/hotel.safetensors")),
+    #[cfg(feature = "folds")]
+    ("univ", include_bytes!("../../models/univ.safetensors")),
+    #[cfg(feature = "folds")]
+    ("zara1", include_bytes!("../../models/zara1.safetensors")),
+    #[cfg(feature = "folds")]
+    ("zara2", include_bytes!("../../models/zara2.safetensors")),
 ];
 
 impl fmt::Display for BuiltinModel {
