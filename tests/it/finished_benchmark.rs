@@ -9,7 +9,7 @@ use ddl_tests::place::{Place, json};
 use ddl_tests::{crowd, drawn_model, folder_contents};
 use serde_json::{Value, json};
 
-const PACKED: &str = "DDL without an expert library";
+const PACKED: &str = "DDL as packed";
 const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 const PACK: &str = "pack --benchmark . --out models";
 

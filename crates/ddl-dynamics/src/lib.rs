@@ -6,7 +6,7 @@
 //! use ddl_dynamics::{
 //!     Attractor, CholeskyMetric, LyapunovCertificate, NaturalGradientFlow, StableEuler, rollout,
 //! };
-//! use nalgebra::{Matrix3, Vector3};
+//! use ddl_dynamics::nalgebra::{Matrix3, Vector3};
 //!
 //! let cup = Attractor::new(Vector3::new(0.6_f32, 0.1, 0.3))?;
 //! // Slow in height, quick across; the hand swings out to the left on its way.
@@ -54,6 +54,8 @@ mod real;
 mod rollout;
 mod spectrum;
 mod state;
+
+pub use nalgebra;
 
 pub use attractor::Attractor;
 pub use error::DynamicsError;

@@ -355,8 +355,8 @@ def draw_panel(axes: Axes, moment: ddl.Window, joint: ddl.Forecast) -> None:
     for i in range(len(moment.past)):
         line, true, future, seen = ((part[i] - every.mean(axis=0)) @ turn for part in parts)
         axes.plot(*line.T, color="0.55", linewidth=0.7, label="constant velocity")
-        axes.plot(*true.T, "o-", color="C0", linewidth=1.8, markersize=5, markevery=[-1], label="what happened, 4.8 s")
-        axes.plot(*future.T, "*--", color="C1", linewidth=1.8, markersize=9, markevery=[-1], label="likeliest future")
+        axes.plot(*true.T, "o-", color="C1", linewidth=1.8, markersize=5, markevery=[-1], label="what happened, 4.8 s")
+        axes.plot(*future.T, "*--", color="C0", linewidth=1.8, markersize=9, markevery=[-1], label="likeliest future")
         axes.plot(*seen.T, ".", color="#222222", markersize=4, label="observed, 3.2 s")
         axes.plot(*seen[-1], "o", color="#222222", markersize=4)
     left = float(((every - every.mean(axis=0)) @ turn)[:, 0].min())

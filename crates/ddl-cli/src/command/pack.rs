@@ -13,7 +13,7 @@ use std::path::PathBuf;
 ///
 /// The file holds the weights of both networks in half precision and the configuration of the run, but no trajectory
 /// data: the packed model proposes all of its goals with its network. Every command with --model takes the file. The
-/// row "DDL without an expert library" in the results of the run shows the errors without the tracks.
+/// row "DDL as packed" in the results of the run shows the errors without the tracks.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl pack --model runs/zara1 --out zara1.safetensors")]

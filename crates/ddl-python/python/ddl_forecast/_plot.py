@@ -11,7 +11,8 @@ from ddl_forecast._arrays import Floats, Integers
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-PAST, PATH, GOAL = "#222222", "#d9601a", "#1a7f5a"
+# The colours of the player: forecasts are blue; orange is kept for what happened.
+PAST, PATH, GOAL = "#222222", "#1d5fc2", "#123f84"
 
 
 def draw(

@@ -1,5 +1,7 @@
 //! The first screen: what was measured, the best result with its conditions, and the comparison.
 
+use std::cmp::Ordering;
+
 use maud::{Markup, html};
 
 use crate::document::{inline, warning};
@@ -75,24 +77,27 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
     }
 }
 
-/// Text with the rank of the line by its first error, among lines with the same folds and number of hypotheses.
+/// Text with the rank of the line by its first error as printed, among other forecasters with the same folds and number
+/// of hypotheses.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
-    let ranked: Vec<&StandingLine> = standing.comparable(subject).collect();
-    let (Some(best), Some(_)) = (ranked.first(), subject.mean) else {
+    let others: Vec<&StandingLine> = standing.others(subject).collect();
+    let (Some([own, _]), Some(best)) = (subject.mean, others.first()) else {
+        return String::new();
+    };
+    let Some([ade, fde]) = best.mean else {
         return String::new();
     };
     let guesses = match subject.hypotheses {
         1 => "one hypothesis".to_owned(),
         several => format!("{several} hypotheses"),
     };
-    let of_all = format!("the {} measured with {guesses}", forecasters(ranked.len()));
-    match best.mean {
-        Some([ade, fde]) if best.label != subject.label => {
-            let label = &best.label;
-            format!("Of {of_all}, {label} has the least error ({ade:.3}/{fde:.3} m).")
-        }
-        _ if ranked.len() > 1 => format!("It has the least error of {of_all}."),
-        _ => String::new(),
+    let label = &best.label;
+    let of_all = format!("the {} forecasters measured with {guesses}", others.len() + 1);
+    let printed = |error: f64| format!("{error:.3}");
+    match own.total_cmp(&ade) {
+        _ if printed(own) == printed(ade) => format!("Of {of_all}, it and {label} have the same error."),
+        Ordering::Less => format!("It has the least error of {of_all}."),
+        _ => format!("Of {of_all}, {label} has the least error ({ade:.3}/{fde:.3} m)."),
     }
 }
 
@@ -133,11 +138,4 @@ fn grouped(count: usize) -> String {
         words.push(digit);
     }
     words
-}
-
-fn forecasters(count: usize) -> String {
-    match count {
-        1 => "one forecaster".to_owned(),
-        several => format!("{several} forecasters"),
-    }
 }

@@ -30,8 +30,8 @@ pub(super) struct StandingLine {
 }
 
 impl Standing {
-    /// The forecaster that is the subject of the report: the best trained one, without its variations ("DDL", not "DDL
-    /// without an expert library"). If there is no trained one, it is that of another program, otherwise the best one.
+    /// The forecaster that is the subject of the report: the best trained one, without its variations ("DDL", not "DDL as
+    /// packed"). If there is no trained one, it is that of another program, otherwise the best one.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
         let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
@@ -46,12 +46,14 @@ impl Standing {
             .or(self.lines.first())
     }
 
-    /// The lines that can be ranked against `to`, the best first: those with the same number of hypotheses and with
-    /// every fold measured.
-    pub(super) fn comparable(&self, to: &StandingLine) -> impl Iterator<Item = &StandingLine> {
-        let hypotheses = to.hypotheses;
-        let is_comparable = move |line: &&StandingLine| line.mean.is_some() && line.hypotheses == hypotheses;
-        self.lines.iter().filter(is_comparable)
+    /// The forecasters that `line` can be ranked against, the best first: those with the same number of hypotheses and
+    /// with every fold measured, without its own variations.
+    pub(super) fn others<'a>(&'a self, line: &'a StandingLine) -> impl Iterator<Item = &'a StandingLine> {
+        let is_other = |other: &&StandingLine| {
+            let is_variation = other.conditions.forecaster.starts_with(&line.conditions.forecaster);
+            other.mean.is_some() && other.hypotheses == line.hypotheses && !is_variation
+        };
+        self.lines.iter().filter(is_other)
     }
 }
 

@@ -12,7 +12,7 @@ use crate::report::{deployable, metrics, significance};
 
 /// Rows that only the full tables show, by the end of their names.
 const LEFT_OUT: [&str; 3] = [
-    "without an expert library",
+    "as packed",
     "on the way that its network shapes",
     "constant acceleration (bounded)",
 ];
@@ -66,7 +66,9 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
             by_fold.row(start.into_iter().chain(cells));
         }
     }
-    if let Some(best) = literature::best(convention) {
+    // A part of the windows or of the folds does not compare with what others measured on all.
+    let is_whole = shown[0].test_subset.is_none() && convention.fold_names().all(|name| folds.contains(&name));
+    if let Some(best) = literature::best(convention).filter(|_| is_whole) {
         let start = [format!("{}, the best published", best.method), "best of 20".to_owned()];
         let published = |fold: &&str| {
             let index = convention.fold_names().position(|name| name == *fold);

@@ -34,9 +34,10 @@ struct MeasuredRecording {
     sha256: String,
 }
 
-/// 1: with the row without an expert library. 2: the central goal is drawn towards the extrapolated last step. 3: the
-/// single forecast is straight. 4: motion is bounded.
-const ROWS: u32 = 4;
+/// 1: with the row of the packed model. 2: the central goal is drawn towards the extrapolated last step. 3: the
+/// single forecast is straight. 4: motion is bounded. 5: the row of the packed
+/// model is called so.
+const ROWS: u32 = 5;
 
 impl EvaluationRecord {
     fn new(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest) -> Self {

@@ -1,6 +1,5 @@
 //! The variants of a model that an evaluation compares, each with its goals and its motion.
 
-use crate::forecast::name::WITHOUT_LIBRARY;
 use crate::forecast::walk::PathIntegrator;
 use crate::model::ddl::Ddl;
 use ddl_eval::Protocol;
@@ -106,7 +105,7 @@ impl EvaluationVariant {
             let change = said("on the way that its network shapes");
             add(Protocol::Single, GivenGoals::Central, stable, change);
             if model.goal_model().has_library_beside_network() {
-                let change = said(WITHOUT_LIBRARY);
+                let change = said("as packed");
                 add(Protocol::Fair, GivenGoals::WithoutLibrary, stable, change);
             }
             let mut with_memory = model.config().data.convention.folds_with_place_memory();

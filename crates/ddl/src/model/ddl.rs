@@ -4,7 +4,7 @@ use crate::device::Device;
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast, Walked};
 use crate::forecast::joint::GivenPlan;
-use crate::forecast::name::{NAME, WITHOUT_LIBRARY};
+use crate::forecast::name::NAME;
 use crate::forecast::shaped::{self, GuidedGoals};
 use crate::forecast::walk::PathIntegrator;
 use crate::goals::model::GoalModel;
@@ -241,10 +241,7 @@ impl Ddl {
 
 impl Forecaster for Ddl {
     fn name(&self) -> String {
-        match self.run() {
-            Some(_) => NAME.into(),
-            None => format!("{NAME} {WITHOUT_LIBRARY}"),
-        }
+        NAME.into()
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {

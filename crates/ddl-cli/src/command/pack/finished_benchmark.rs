@@ -11,7 +11,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-const FORECASTER: &str = "DDL without an expert library";
+const FORECASTER: &str = "DDL as packed";
 /// Largest size of a built-in model, bytes.
 const MOST_BYTES: usize = 2_000_000;
 

@@ -17,7 +17,7 @@ fn a_summary_has_every_forecaster_once_under_each_protocol_with_other_errors() {
         for seed in [1, 2] {
             let errors = five_folds(protocol, seed, min_ade * seed as f64);
             rows.extend(errors.clone());
-            let name = "DDL without an expert library";
+            let name = "DDL as packed";
             rows.extend(errors.into_iter().map(|mut row| {
                 name.clone_into(&mut row.conditions.forecaster);
                 row
@@ -47,4 +47,10 @@ fn a_summary_has_every_forecaster_once_under_each_protocol_with_other_errors() {
     assert_eq!(metrics[2], "0.375 [0.345, 0.405]");
     assert_eq!(metrics[4..8], ["0.333", "25.0", "10.0", "87.5"]);
     assert_eq!(report.summary(Convention::SocialGan), None);
+    let mut part = report.rows().to_vec();
+    for row in &mut part {
+        row.conditions.test_subset = Some("150 of 181 pedestrians".to_owned());
+    }
+    let part = Report::new("Part", part).unwrap().summary(Convention::Star).unwrap();
+    assert!(!part.contains("published"), "{part}");
 }

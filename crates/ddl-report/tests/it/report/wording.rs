@@ -1,6 +1,6 @@
 //! Wording of reports where rows could be misread.
 
-use ddl_eval::Protocol;
+use ddl_eval::{Protocol, ResultRow};
 use ddl_report::Report;
 
 use super::{cells, five_folds, line, markdown, of_forecaster};
@@ -11,13 +11,47 @@ fn a_line_that_lacks_folds_is_not_ranked_against_one_that_has_them() {
     rows.truncate(1);
     let baseline = of_forecaster(five_folds(Protocol::Fair, 1, 0.5), "constant velocity");
     rows.extend(baseline.into_iter().take(2));
-    let report = Report::new("Parts", rows).unwrap();
-    let page = ddl_report::page::Page::new(&report).to_html().unwrap();
-    let (_, verdict) = page.split_once("class=\"verdict\"").unwrap();
-    let (verdict, _) = verdict.split_once("</p>").unwrap();
+    let verdict = verdict_of(rows);
     assert!(verdict.contains("<strong>DDL</strong>"), "{verdict}");
     assert!(verdict.contains("lacks other folds"), "{verdict}");
     assert!(!verdict.contains("least"), "{verdict}");
+}
+
+#[test]
+fn a_tie_and_a_variation_of_the_same_model_are_no_victory() {
+    let verdict = |others: &[(&str, f64)]| {
+        let mut rows = five_folds(Protocol::Fair, 1, 0.25);
+        for (name, min_ade) in others {
+            rows.extend(of_forecaster(five_folds(Protocol::Fair, 1, *min_ade), name));
+        }
+        verdict_of(rows)
+    };
+    for (others, said) in [
+        (
+            &[("other", 0.5)][..],
+            Some("It has the least error of the 2 forecasters"),
+        ),
+        (&[("DDL as packed", 0.5)], None),
+        (
+            &[("DDL as packed", 0.5), ("other", 0.250_04)],
+            Some("it and other have the same error"),
+        ),
+        (
+            &[("DDL as packed", 0.125), ("other", 0.2)],
+            Some("other has the least error (0.200/0.400 m)"),
+        ),
+    ] {
+        let verdict = verdict(others);
+        assert_eq!(verdict.contains("error"), said.is_some(), "{verdict}");
+        assert!(verdict.contains(said.unwrap_or_default()), "{verdict}");
+    }
+}
+
+fn verdict_of(rows: Vec<ResultRow>) -> String {
+    let report = Report::new("Results", rows).unwrap();
+    let page = ddl_report::page::Page::new(&report).to_html().unwrap();
+    let (_, verdict) = page.split_once("class=\"verdict\"").unwrap();
+    verdict.split_once("</p>").unwrap().0.to_owned()
 }
 
 #[test]
