@@ -65,6 +65,12 @@ pub fn check(page: &str) {
     let is_on = |list: &[(&str, &str)], command: &Command| list.iter().any(|&entry| begins(page, command, entry));
     let datasets = recordings::star_folder();
     let mut commands = console::commands(&text);
+    for command in &mut commands {
+        // The program is built already.
+        if let Some(arguments) = command.typed.strip_prefix("cargo run --release -p ddl-cli -- ") {
+            command.typed = format!("ddl {arguments}");
+        }
+    }
     commands.retain(|command| {
         let of_cargo = command.typed.starts_with("cargo ");
         if of_cargo && !command.typed.starts_with("cargo xtask ") {

@@ -6,6 +6,7 @@ mod display;
 #[cfg(test)]
 mod fixture;
 mod method;
+mod pace;
 mod plan;
 mod profile;
 mod record;

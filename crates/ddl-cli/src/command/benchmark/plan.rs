@@ -1,6 +1,7 @@
 //! The plan: which models are trained and scored, as data.
 
 use crate::command::benchmark::method::Method;
+use crate::command::benchmark::pace::Pace;
 use crate::command::benchmark::profile::{Optimiser, Profile};
 use crate::command::recipe::Recipe;
 use anyhow::{Context as _, bail, ensure};
@@ -128,6 +129,15 @@ impl Plan {
         let same = |other: &&Task| (&other.fold, other.seed) == (&task.fold, task.seed);
         let first = self.tasks.iter().find(same)?;
         (first != task).then_some(first)
+    }
+
+    /// How the time of a task divides into its stages.
+    pub(super) fn pace(&self, task: &Task) -> Pace {
+        let pace = self.settings.profile.pace(self.settings.recipe.name);
+        if self.with_same_goals(task).is_some() {
+            return pace.without_goals();
+        }
+        pace
     }
 
     pub(super) fn train_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {

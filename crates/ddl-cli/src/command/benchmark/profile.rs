@@ -1,5 +1,6 @@
 //! The amount of work of each profile.
 
+use crate::command::benchmark::pace::Pace;
 use crate::command::recipe::Recipe;
 use clap::ValueEnum;
 use ddl::network::{LearningRateSchedule, TrainingConfig};
@@ -64,6 +65,17 @@ impl Optimiser {
 }
 
 impl Profile {
+    /// Seconds of one core for the folds of two scenes or zara1 (AMD EPYC). They only have to be right to each other.
+    pub(super) fn pace(self, recipe: Recipe) -> Pace {
+        match (recipe, self) {
+            (_, Self::Smoke) => Pace::of_seconds(24.0, 4.0, 10.0),
+            (Recipe::Recommended, Self::Quick) => Pace::of_seconds(243.0, 29.0, 22.0),
+            (Recipe::Recommended, Self::Paper) => Pace::of_seconds(243.0, 58.0, 21.0),
+            (Recipe::Published, Self::Quick) => Pace::of_seconds(243.0, 250.0, 60.0),
+            (Recipe::Published, Self::Paper) => Pace::of_seconds(243.0, 14_000.0, 300.0),
+        }
+    }
+
     pub(super) fn work(self, recipe: Recipe) -> Work {
         let (folds, proposal_steps, test_pedestrians) = match self {
             Self::Smoke => (2, Some(40), Some(150)),

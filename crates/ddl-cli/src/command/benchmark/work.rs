@@ -8,6 +8,7 @@ use crate::progress::ProgressLine;
 use anyhow::Context as _;
 use ddl::data::remove_temporary_files;
 use ddl::{DeviceChoice, RunDirectory};
+use std::cell::Cell;
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::Write as _;
@@ -21,12 +22,6 @@ use std::time::Instant;
 /// Default number of tasks that share one graphics card: the folds of a convention. Their kernels are small, and each
 /// needs one or two gigabytes of memory.
 const ON_ONE_CARD: usize = 5;
-
-/// Share of the training in the progress of a task.
-const TRAINING: f64 = 0.8;
-
-/// Share of the goals, the first stage, in the progress of a training.
-const GOALS: f64 = 0.15;
 
 const LAST_LINES: usize = 8;
 
@@ -157,13 +152,17 @@ impl Workers {
         interrupt: &Interrupt,
     ) -> Option<TaskEnd> {
         let steps = [
-            (plan.train_arguments(task, out, self.threads), 0.0, TRAINING),
-            (plan.evaluate_arguments(task, out, self.threads), TRAINING, 1.0),
+            plan.train_arguments(task, out, self.threads),
+            plan.evaluate_arguments(task, out, self.threads),
         ];
-        for (arguments, from, to) in steps {
-            let tell = |fraction: f64, message: &str| {
-                watch(task, Event::Advanced(from + (to - from) * fraction, message));
-            };
+        let pace = plan.pace(task);
+        // The progress of a task never decreases.
+        let reached = Cell::new(0.0_f64);
+        let tell = |stage: &str, fraction: f64, message: &str| {
+            reached.set(reached.get().max(pace.at(stage, fraction)));
+            watch(task, Event::Advanced(reached.get(), &format!("{stage} {message}")));
+        };
+        for arguments in steps {
             match self.run_step(log, &arguments, interrupt, &tell) {
                 Ok(status) if status.success() => {}
                 // A process that was asked to stop has saved its state and ended.
@@ -188,7 +187,7 @@ impl Workers {
         log: &mut File,
         arguments: &[String],
         interrupt: &Interrupt,
-        tell: &dyn Fn(f64, &str),
+        tell: &dyn Fn(&str, f64, &str),
     ) -> anyhow::Result<ExitStatus> {
         writeln!(log, "$ ddl {}", arguments.join(" ")).context("cannot write the log")?;
         let errors = log.try_clone().context("cannot share the log")?;
@@ -199,18 +198,11 @@ impl Workers {
             .args(arguments)
             .env("DDL_COMMIT", &self.commit)
             .stderr(Stdio::from(errors));
-        let mut reached = 0.0_f64;
         child::run(&mut command, interrupt, |line| {
             match serde_json::from_str::<ProgressLine<'_>>(line) {
                 Ok(progress) if progress.total > 0 => {
-                    // A new stage of the program counts from 0 again; the progress of the task never decreases.
                     let fraction = (progress.done as f64 / progress.total as f64).min(1.0);
-                    reached = reached.max(match progress.stage.as_ref() {
-                        "goals" => GOALS * fraction,
-                        "train" => GOALS + (1.0 - GOALS) * fraction,
-                        _ => fraction,
-                    });
-                    tell(reached, &format!("{} {}", progress.stage, progress.message));
+                    tell(&progress.stage, fraction, &progress.message);
                 }
                 // Other lines go to the log; a failure to write them does not harm the task.
                 _ => drop(writeln!(log, "{line}")),
