@@ -1,4 +1,4 @@
-"""Runs `ddl benchmark --executor slurm` on a real Slurm of two nodes on this machine.
+"""Runs the tasks of a benchmark, by docs/slurm.sh, on a real Slurm of two nodes on this machine.
 
     check_cluster.py PROGRAM
 
@@ -16,14 +16,13 @@ import tempfile
 import time
 
 NODES = ["n1", "n2"]
-# The benchmark has more tasks than this, so that it needs two arrays.
-LONGEST_ARRAY = 4
 # Slurm notices a lost node after half a minute and restarts its tasks two minutes later.
 LIMIT = 600
 OUT = pathlib.Path("target/cluster").absolute()
 ALL = ["eth", "hotel", "univ", "zara1", "zara2"]
 PROGRAM = [os.path.abspath(sys.argv[1]), "benchmark", "--profile", "smoke"]
-SLURM = ["--executor", "slurm"]
+os.environ["DDL"] = PROGRAM[0]
+SCRIPT = str(pathlib.Path(__file__).parents[2] / "docs/slurm.sh")
 RESULTS = ["model.safetensors", "proposal.safetensors", "report.json", "moments.json"]
 CONFIGURATION = """\
 ClusterName=test
@@ -49,7 +48,6 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_Core
 SlurmdParameters=config_overrides
 ReturnToService=2
-MaxArraySize={longest}
 KillWait=10
 SlurmdTimeout=10
 NodeName=n1 NodeHostname={host} NodeAddr=127.0.0.1 Port=16821 CPUs=1 RealMemory=2000
@@ -81,7 +79,7 @@ class Slurm:
         key.chmod(0o400)
         configuration = self.folder / "slurm.conf"
         host = os.uname().nodename.split(".")[0]
-        configuration.write_text(CONFIGURATION.format(host=host, folder=self.folder, longest=LONGEST_ARRAY))
+        configuration.write_text(CONFIGURATION.format(host=host, folder=self.folder))
         os.environ["SLURM_CONF"] = str(configuration)
         files = {"key-file": "key", "socket": "socket", "pid-file": "pid", "log-file": "log", "seed-file": "seed"}
         options = [f"--{option}={self.folder}/{name}" for option, name in files.items()]
@@ -143,19 +141,25 @@ def jobs():
 class Benchmark:
     """The benchmark of the first folds in a folder of this name."""
 
-    def __init__(self, name, folds, *words):
+    def __init__(self, name, folds):
         self.name, self.folds = name, folds
-        self.words = ["--folds", ",".join(folds), "--out", str(OUT / name), *words]
 
-    def begin(self):
+    def run(self, *words):
         with open(OUT / f"{self.name}.log", "ab") as log:
-            command = [*PROGRAM, *self.words]
-            return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+            command = [*PROGRAM, "--folds", ",".join(self.folds), "--out", str(OUT / self.name), *words]
+            ended = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log, check=False)
+        check(ended.returncode == 0, f"{' '.join(command)} failed")
+
+    def submit(self):
+        self.run("--executor", "none")
+        options = ["--job-name=ddl", f"--output={OUT}/%A_%a.log"]
+        folder = str(OUT / self.name)
+        submit(*options, f"--array=0-{len(self.folds) - 1}", SCRIPT, folder, "--threads", "1")
+        collect = f"{PROGRAM[0]} benchmark --out {folder} --collect"
+        submit(*options, "--dependency=singleton", "--wrap", collect)
 
     def finish(self):
-        """Until the command and its jobs have ended, with results that equal those made without Slurm."""
-        command = self.begin()
-        until("the end of the command", lambda: command.poll() is not None)
+        """Until its jobs have ended, with results that equal those made without Slurm."""
         until("the end of its jobs", lambda: not jobs())
         self.compare()
 
@@ -173,6 +177,10 @@ class Benchmark:
         until("a trained first stage", lambda: all(stage.exists() for stage in stages))
 
 
+def submit(*words):
+    subprocess.run(["sbatch", *words], check=True, stdout=subprocess.DEVNULL)
+
+
 def restarts(task):
     return ask(f"scontrol show job {task}").split(" Restarts=")[1].split()[0]
 
@@ -184,25 +192,20 @@ def check(condition, message):
 
 def here(_):
     """all folds on this machine alone"""
-    check(Benchmark("here", ALL).begin().wait() == 0, "the benchmark failed")
+    Benchmark("here", ALL).run()
 
 
 def submitted(_):
-    """all folds on Slurm in two arrays; the command ends; a second one submits nothing; same report"""
-    benchmark = Benchmark("submitted", ALL, *SLURM)
-    check(benchmark.begin().wait() == 0, "the command failed")
-    first = jobs()
-    check(len(first) == 3, f"two arrays and a report were expected, not the jobs {first}")
-    check(benchmark.begin().wait() == 0, "the second command failed")
-    check(jobs() <= first, f"the jobs {first} have become {jobs()}")
-    until("the end of the jobs", lambda: not jobs())
-    benchmark.compare()
+    """an array of all folds and a job for the report: same `report.json`, `report.md`, `moments.json`"""
+    benchmark = Benchmark("submitted", ALL)
+    benchmark.submit()
+    benchmark.finish()
 
 
 def lost_node(slurm):
     """a node is lost: its task restarts, with the same results"""
-    benchmark = Benchmark("lost-node", ALL[:2], *SLURM)
-    benchmark.begin()
+    benchmark = Benchmark("lost-node", ALL[:2])
+    benchmark.submit()
     benchmark.until_trained()
     lost = next(element[0] for element in running() if element[3] == NODES[0])
     slurm.kill_node(NODES[0])
@@ -213,8 +216,8 @@ def lost_node(slurm):
 def warned(_):
     """Slurm warns of the time limit: the task saves, is queued again, and resumes to the same results"""
     os.environ.update(SBATCH_TIMELIMIT="2", SBATCH_SIGNAL="B:INT@110")
-    benchmark = Benchmark("warned", ALL[:2], *SLURM)
-    benchmark.begin()
+    benchmark = Benchmark("warned", ALL[:2])
+    benchmark.submit()
     again = until("a warned task in the queue", lambda: [one for one in elements() if one[2] == "BeginTime"])[0][0]
     del os.environ["SBATCH_TIMELIMIT"], os.environ["SBATCH_SIGNAL"]
     for task, *_ in elements():
@@ -225,14 +228,15 @@ def warned(_):
 
 
 def cancelled(_):
-    """a task is cancelled: it saves and is not queued again; the same command resumes to the same results"""
-    benchmark = Benchmark("cancelled", ALL[:1], *SLURM)
-    benchmark.begin()
+    """a task is cancelled: it saves and is not queued again; the same commands resume to the same results"""
+    benchmark = Benchmark("cancelled", ALL[:1])
+    benchmark.submit()
     benchmark.until_trained()
     ask(f"scancel {running()[0][0]}")
     until("the end of its jobs", lambda: not jobs())
     log = OUT / f"cancelled/{ALL[0]}-full-1/log.txt"
     check("interrupted" in log.read_text(), "the training did not save")
+    benchmark.submit()
     benchmark.finish()
 
 

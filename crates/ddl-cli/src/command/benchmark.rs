@@ -11,7 +11,6 @@ mod plan;
 mod profile;
 mod record;
 mod report;
-mod slurm;
 mod work;
 
 pub(crate) use method::Method;
@@ -30,7 +29,6 @@ use ddl::data::remove_temporary_files;
 use ddl::{DdlError, RunLock};
 use display::Display;
 use record::Record;
-use slurm::Slurm;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -41,8 +39,6 @@ use work::{TaskEnd, Workers, side_by_side};
 enum Executor {
     /// This machine
     Local,
-    /// Slurm: an array of jobs, and one job that makes the report; this program submits them and ends
-    Slurm,
     /// Elsewhere, by --task and --collect: this command writes the plan only
     None,
 }
@@ -54,14 +50,12 @@ enum Executor {
 #[derive(Debug, Args)]
 #[command(
     after_help = "Examples:\n  ddl benchmark\n  ddl benchmark --convention simulated --profile smoke --out \
-        runs/smoke\n  ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron\n  \
-        SBATCH_TIMELIMIT=2:00:00 ddl benchmark --executor slurm --threads 4"
+        runs/smoke\n  ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron"
 )]
 pub(crate) struct Benchmark {
     #[command(flatten)]
     choice: PlanOptions,
-    /// Where the tasks run; with slurm the variables of `sbatch` (`SBATCH_PARTITION`, `SBATCH_ACCOUNT`,
-    /// `SBATCH_TIMELIMIT`, ...) apply
+    /// Where the tasks run
     #[arg(long, value_enum, default_value_t = Executor::Local)]
     executor: Executor,
     /// Run only task N of the plan in --out, counted from 0, as in `--task "$JOB_COMPLETION_INDEX"`
@@ -76,10 +70,10 @@ pub(crate) struct Benchmark {
     #[arg(long, requires = "out", conflicts_with_all = ["PlanOptions", "executor", "jobs"])]
     collect: bool,
     /// Processes that run at the same time and share the cores [default: one for each core; on cuda all tasks, at most
-    /// five; with slurm all tasks]
+    /// five]
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     jobs: Option<usize>,
-    /// Cores to use; with slurm for each task [default: those that Slurm grants, or else all; with slurm 1]
+    /// Cores to use [default: those that Slurm grants, or else all]
     #[arg(long, value_name = "N", value_parser = at_least_one, env = "SLURM_CPUS_PER_TASK")]
     threads: Option<usize>,
     /// Folder of the results; a benchmark in it is resumed [default: `runs/CONVENTION-PROFILE`, and
@@ -109,7 +103,6 @@ impl Benchmark {
         remove_temporary_files(&out);
         match self.executor {
             Executor::Local => self.run_here(&plan, &out),
-            Executor::Slurm => self.run_on_slurm(&plan, &out),
             Executor::None => {
                 plan.write(&out)?;
                 let command = format!("ddl benchmark --out {}", shell_word(&out));
@@ -141,32 +134,6 @@ impl Benchmark {
         self.report(plan, out)?;
         tell(format_args!("wall time: {}", human(start.elapsed())));
         Ok(())
-    }
-
-    /// Submits the unfinished tasks, unless jobs of the folder are in the queue. Without unfinished tasks it makes the
-    /// report.
-    fn run_on_slurm(&self, plan: &Plan, out: &Path) -> anyhow::Result<()> {
-        let slurm = Slurm::new(out, &self.reporting.commit)?;
-        let jobs = slurm.queue()?.join(" ");
-        if !jobs.is_empty() {
-            ensure!(
-                Plan::read(out)? == *plan,
-                "jobs of another plan run in {}: wait for their end, cancel them with `scancel {jobs}`, or choose \
-                 another --out",
-                out.display()
-            );
-            tell(format_args!(
-                "jobs {jobs} of this folder are in the queue: nothing is submitted"
-            ));
-            return Ok(());
-        }
-        plan.write(out)?;
-        let is_unfinished = |index: &usize| Record::of(&plan.tasks[*index], out).is_none();
-        let unfinished: Vec<usize> = (0..plan.tasks.len()).filter(is_unfinished).collect();
-        if unfinished.is_empty() {
-            return self.report(plan, out);
-        }
-        slurm.submit(&unfinished, self.jobs, self.threads.unwrap_or(1))
     }
 
     fn do_task(&self, index: usize, out: &Path) -> anyhow::Result<()> {
