@@ -11,8 +11,9 @@ use crate::process::{read, run};
 use crate::python::Python;
 use crate::workspace::Workspace;
 
-/// Names, versions and SHA-256 sums, for pip.
+/// Names, versions and SHA-256 sums, for pip: of the checks, and of a release.
 const LIST: &str = "xtask/tools.txt";
+const LIST_OF_RELEASE: &str = "xtask/release-tools.txt";
 
 /// The folder of the tools, for Python's search path; its `bin` holds the programs.
 #[derive(Debug)]
@@ -22,16 +23,25 @@ pub(crate) struct Tools {
 }
 
 impl Tools {
-    /// The tools from the cache, or from the package index.
+    /// The tools of the checks, from the cache or from the package index.
     pub(crate) fn ensure(workspace: &Workspace) -> Result<Self> {
+        Self::of_list(workspace, LIST)
+    }
+
+    /// The tools of a release.
+    pub(crate) fn for_release(workspace: &Workspace) -> Result<Self> {
+        Self::of_list(workspace, LIST_OF_RELEASE)
+    }
+
+    fn of_list(workspace: &Workspace, list: &str) -> Result<Self> {
         let python = Python::find()?;
-        let list = workspace.path(LIST);
+        let list = workspace.path(list);
         // Some packages are compiled for one minor version of Python.
         let version = read(&mut python.call(["-c", "import sys; print('%d.%d' % sys.version_info[:2])"]))?;
         let name = format!("tools-{}-{}", version.trim(), &sha256(&list)?[..12]);
         let folder = cache::folder()?.join(name);
         if !folder.is_dir() {
-            eprintln!("fetching the tools of {LIST} with pip, once");
+            eprintln!("fetching the tools of {} with pip, once", list.display());
             fs::create_dir_all(cache::folder()?)?;
             let work = tempfile::tempdir_in(cache::folder()?)?.keep();
             let pip = "-m pip install --quiet --disable-pip-version-check --only-binary=:all: --no-cache-dir --no-deps \
@@ -50,7 +60,9 @@ impl Tools {
 
     /// A program of these, with the environment of a plain cargo.
     pub(crate) fn program(&self, workspace: &Workspace, name: &str) -> Command {
-        workspace.program(self.folder.join("bin").join(name))
+        let mut program = workspace.program(self.folder.join("bin").join(name));
+        program.env("PYTHONPATH", &self.folder);
+        program
     }
 
     /// Python with the packages of these.
