@@ -144,8 +144,6 @@ fn a_number_goes_from_the_model_to_the_page() {
     let collected = Report::load(&place.at("pages/report.json")).unwrap();
     assert_eq!(collected.title(), "Corridor");
     assert_eq!(collected.rows(), [report.rows(), elsewhere.rows()].concat());
-    let latex = place.text("pages/report.tex");
-    assert!(latex.contains("\\begin{tabular}") && latex.contains("\\texttt{fair}"));
     let markdown = place.text("pages/report.md");
     assert!(markdown.lines().next().unwrap().contains("simulated"));
     for text in [

@@ -253,9 +253,9 @@ fn files_are_named_checked_and_read_back() {
     rows[0].scores.stability = None;
     rows[1].conditions.window_rule = WindowRule::SocialGan { min_pedestrians: 2 };
     let report = Report::new("Quick", rows).unwrap();
-    let [markdown, (latex, _), (name, json)] = report.files().unwrap();
+    let [markdown, (name, json)] = report.files().unwrap();
     assert_eq!(markdown, ("report.md", report.to_markdown()));
-    assert_eq!([latex, name], ["report.tex", "report.json"]);
+    assert_eq!(name, "report.json");
     let file = std::env::temp_dir().join(format!("ddl-report-{}.json", std::process::id()));
     std::fs::write(&file, &json).unwrap();
     assert_eq!(Report::load(&file).unwrap(), report);
@@ -312,14 +312,10 @@ fn protocols_meet_in_one_table_with_its_warning() {
     assert_eq!(rows[0][1..4], published);
     assert_eq!(rows[1][1..4], ["fair", "20", "0.250/0.500"]);
     let html = Page::new(&report).to_html().unwrap();
-    let [_, (_, latex), _] = report.files().unwrap();
     for cell in ["0.250/0.500", "0.125/0.250", "0.36/0.65"] {
         assert!(html.contains(&format!("<td>{cell}</td>")), "{cell}");
-        assert!(latex.contains(&format!("& {cell} ")), "{cell}");
     }
-    for text in [&html, &latex] {
-        assert!(text.contains("chosen with the TRUE end"));
-    }
+    assert!(html.contains("chosen with the TRUE end"));
 }
 
 #[test]
