@@ -136,6 +136,8 @@ numpy.txt: # frame pedestrian x_cm y_cm\n0 1 250 350
 => table 0 1 2.5 3.5 1 the positions are in centimetres
 rostopic.csv: %time,field.id,field.pose.position.x,field.pose.position.y\n1351039227100000000,3,1.5,2.5
 => table 1351039227100000 3 1.5 2.5 1 19 digits
+further.csv: frame,vx,pedestrian,x,y,note\n0,9,1,2.0,3.0,a
+=> table 0 1 2 3 1 the columns vx, note are not read
 times.csv: timestamp,id,x,y\n1700000000100,7,0.5,1\n1700000000500,7,1,1
 => table 1700000000100000 7 0.5 1 2 13 digits: they are read as milliseconds
 "#;
@@ -191,7 +193,6 @@ fn splines_and_lists_of_tracks_are_read() {
         ("a.txt", &edinburgh.replace("20 7", "20"), "expected x, y and frame"),
         ("a.txt", &edinburgh.replace("7 ]];", "7"), "is the file cut off?"),
         ("a.txt", &edinburgh.replace("TRACK.R2", "TRACE"), "expected a track"),
-        ("000001.txt", "120 300 5\n121 301 6\n", "Grand Central"),
         ("a.parquet", "PAR1\u{15}", "read_parquet"),
     ] {
         let found = read(name, text).unwrap_err();
@@ -237,23 +238,9 @@ fn formats_of_others_are_read_and_what_was_assumed_is_told() {
     assert_eq!(rate.stated_frame_time(), Some(1.0 / 25.0));
 }
 
-/// Files with their texts, and a part of the message.
-const MISREAD: &str = r"
-yolo.txt: 9 0 .48 .41 .51 .46 .50 .44\n8 0 .59 .48 .62 .53 .60 .50 => the fourth, the height, changes
-two.txt: 0 1 0 0\n0 2 0.5 0\n1 1 0.5 0\n1 2 1 0 => may be frame and pedestrian, or pedestrian and frame
-pandas.csv: ,a,b,c,d\n0,0,1,2,3 => still missing: frame, pedestrian, x, y
-wide.csv: frame,x1,y1,x2,y2,x3,y3\n0,1,2,3,4,5,6 => each pedestrian has columns of its own
-";
-
-/// Detections that look like the table of ETH, and others.
+/// A header of many empty names has a short message.
 #[test]
-fn what_is_read_wrongly_elsewhere_is_refused() {
-    for case in MISREAD.trim().lines() {
-        let (file, problem) = case.split_once(" => ").unwrap();
-        let (name, text) = file.split_once(": ").unwrap();
-        let found = read(name, &(text.replace("\\n", "\n") + "\n")).unwrap_err();
-        assert!(found.contains(problem), "{found}");
-    }
+fn messages_are_short() {
     let commas = ",".repeat(200_000) + "\n";
     let message = read("commas.csv", &commas).unwrap_err();
     assert!(message.len() < 400, "{message}");
