@@ -72,7 +72,7 @@ impl Format {
         match (first.len(), separator) {
             (4, _) => lines
                 .of_four(separator)
-                .map_err(|problem| FilePlace::line(1).wrong(&path.display().to_string(), problem)),
+                .map_err(|problem| FilePlace::line(1).wrong(problem).in_file(&path.display().to_string())),
             (5, Separator::Blanks) => Ok(lines.of_five(separator)),
             (_, Separator::Blanks) if !named("csv") => Ok(Self::SocialGan),
             _ => Ok(Self::Table),
@@ -152,7 +152,7 @@ impl<'a> Lines<'a> {
     /// The first N columns of the rows in which these are numbers.
     fn numbers<const N: usize>(self, separator: Separator) -> impl Iterator<Item = [f64; N]> {
         self.filled().filter_map(move |line| {
-            let fields = separator.fields(line, 1, "").ok()?;
+            let fields = separator.fields(line, 1).ok()?;
             let numbers = fields.iter().take(N).map(|field| field.parse().ok());
             numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
         })
@@ -191,7 +191,7 @@ impl<'a> Lines<'a> {
 
 /// The fields of a line, without empty ones at its end.
 fn fields(separator: Separator, line: &str) -> Vec<String> {
-    let fields = separator.fields(line, 1, "").unwrap_or_default();
+    let fields = separator.fields(line, 1).unwrap_or_default();
     let mut fields: Vec<String> = fields.into_iter().map(std::borrow::Cow::into_owned).collect();
     while fields.last().is_some_and(String::is_empty) {
         fields.pop();
