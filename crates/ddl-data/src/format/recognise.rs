@@ -202,38 +202,3 @@ fn fields(separator: Separator, line: &str) -> Vec<String> {
 fn is_number(field: &str) -> bool {
     field.parse::<f64>().is_ok()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn every_format_is_recognised() {
-        let cases = r#"
-a.ndjson:: => trajnet
-a::\n {"scene": {}} => trajnet
-a.txt::0 1 2 3 4 5 6 7\n => obsmat
-a.txt::0\t1\t2\t3\n => social-gan
-a::0 1 2 3\n => social-gan
-a.csv::0,1,2,3,4\n1,1,1,1,1\n0,0,0,0,0\n1,1,1,1,1\n => star-csv
-a.csv::frame,pedestrian,x,y\n0,1,2,3\n => table
-a.csv::0,1,2,3\n1,1,2,3\n2,1,2,3\n3,1,2,3\n => social-gan
-a.csv::0,1,2\n => table
-a.csv:: => table
-a.txt:: => social-gan
-a.txt::frame,pedestrian,x,y\n0,1,2,3\n => table
-a.NDJSON:: => trajnet
-a.Jsonl:: => trajnet
-a.TXT::0\t1\t2\t3\n => social-gan
-a.CSV::frame pedestrian x y\n => table
-a.txt::frame pedestrian x y\n0 1 2 3\n => table
-"#;
-        for case in cases.trim().lines() {
-            let (file, format) = case.split_once(" => ").unwrap();
-            let (name, text) = file.split_once("::").unwrap();
-            let text = text.replace("\\n", "\n").replace("\\t", "\t");
-            let guessed = Format::guess(name.as_ref(), text.as_bytes()).unwrap();
-            assert_eq!(guessed.name(), format, "{case}");
-        }
-    }
-}
