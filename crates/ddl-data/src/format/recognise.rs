@@ -103,7 +103,6 @@ fn of_columns(fields: &[String], separator: Separator) -> Option<Format> {
     }
 }
 
-/// The lines of a file.
 #[derive(Debug, Clone, Copy)]
 struct Lines<'a> {
     text: &'a str,

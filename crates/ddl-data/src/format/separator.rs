@@ -16,7 +16,6 @@ pub(super) enum Separator {
 }
 
 impl Separator {
-    /// The separator of a line.
     pub(super) fn of(line: &str) -> Self {
         let count = |separator: char| line.matches(separator).count();
         let (commas, semicolons) = (count(','), count(';'));

@@ -13,7 +13,6 @@ const MOST_RESERVED: usize = 1 << 20;
 /// Bytes of the shortest row.
 const SHORTEST_ROW: usize = 7;
 
-/// The observations of a file of text.
 #[derive(Debug)]
 pub(super) struct TextFile {
     pub(super) rows: Vec<TrackRow>,
@@ -22,7 +21,6 @@ pub(super) struct TextFile {
     pub(super) rate: Option<f64>,
 }
 
-/// The rows of a text.
 pub(super) fn parse(text: &str, format: Format, choice: &ColumnChoice) -> Result<TextFile, Misread> {
     // Old spreadsheets end lines with a carriage return alone.
     let end = if text.contains('\n') { '\n' } else { '\r' };

@@ -118,7 +118,6 @@ fn a_constant_frame_number_does_not_fill_the_memory() {
     assert_eq!(reader.next_frame().unwrap().unwrap().number, 1);
 }
 
-/// The frames of each scene, in order.
 fn by_scene(frames: Vec<Frame>) -> BTreeMap<Option<SceneName>, Vec<Frame>> {
     let mut scenes = BTreeMap::<_, Vec<_>>::new();
     for frame in frames {
