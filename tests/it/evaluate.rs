@@ -196,23 +196,3 @@ fn goals_are_measured() {
         "{words}"
     );
 }
-
-#[test]
-fn invalid_evaluations_are_refused() {
-    let place = Place::with_model();
-    place.all_refused(&[
-        "goals --model run tracks.csv --measure test => cannot be used with",
-        "goals --model run --measure test --last => cannot be used with",
-        "goals --model run --last => TRACKS",
-    ]);
-    let test = "goals --model run --measure test";
-    place.all_fail(&[
-        "goals --model run => TRACKS",
-        "goals --model run tracks.csv --json => --measure",
-        "goals --model run --measure validation => --validation-recordings",
-    ]);
-    place.remove("run/proposal.safetensors");
-    place.fails(test, &["has no goals yet"]);
-    place.write("run/config.json", r#"{"format": 1, "star": {}}"#);
-    place.fails(test, &[&format!("has layout 1, this program reads {}", ddl::FORMAT)]);
-}
