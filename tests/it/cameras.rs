@@ -242,10 +242,7 @@ fn what_does_not_fit_scenes_is_refused() {
     let place = Place::with_model();
     std::fs::create_dir(place.at("memories")).unwrap();
     place.write("scenes.csv", HEADER.to_owned() + &interleaved(as_csv));
-    place.all_fail(&[
-        "forecast scenes.csv --model run => line 2: a file holds one recording",
-        "forecast tracks.csv --model run --latest => --latest is for tracks as they come",
-    ]);
+    place.all_fail(&["forecast scenes.csv --model run => line 2: a file holds one recording"]);
     let tracks = own_tracks::csv(&own_tracks::three_pedestrians(9));
     let finished = place.run_on(&tracks, &format!("{LINE} --memory memories"));
     let words = "memories is a folder, and the lines name no scenes";

@@ -144,8 +144,6 @@ fn a_number_goes_from_the_model_to_the_page() {
     let collected = Report::load(&place.at("pages/report.json")).unwrap();
     assert_eq!(collected.title(), "Corridor");
     assert_eq!(collected.rows(), [report.rows(), elsewhere.rows()].concat());
-    let latex = place.text("pages/report.tex");
-    assert!(latex.contains("\\begin{tabular}") && latex.contains("\\texttt{fair}"));
     let markdown = place.text("pages/report.md");
     assert!(markdown.lines().next().unwrap().contains("simulated"));
     for text in [
@@ -197,24 +195,4 @@ fn goals_are_measured() {
         words.contains("nearest goal off") && words.contains(&nearest_goal),
         "{words}"
     );
-}
-
-#[test]
-fn invalid_evaluations_are_refused() {
-    let place = Place::with_model();
-    place.all_refused(&[
-        "goals --model run tracks.csv --measure test => cannot be used with",
-        "goals --model run --measure test --last => cannot be used with",
-        "goals --model run --last => TRACKS",
-    ]);
-    let test = "goals --model run --measure test";
-    place.all_fail(&[
-        "goals --model run => TRACKS",
-        "goals --model run tracks.csv --json => --measure",
-        "goals --model run --measure validation => --validation-recordings",
-    ]);
-    place.remove("run/proposal.safetensors");
-    place.fails(test, &["has no goals yet"]);
-    place.write("run/config.json", r#"{"format": 1, "star": {}}"#);
-    place.fails(test, &[&format!("has layout 1, this program reads {}", ddl::FORMAT)]);
 }

@@ -10,5 +10,4 @@ mod long_stream;
 mod no_network;
 mod unwritable;
 
-/// Evaluates the model in `run`.
 const EVALUATE: &str = "evaluate --model run --protocol fair --test-pedestrians 20 --threads 1";

@@ -195,19 +195,6 @@ fn an_invalid_line_is_reported_and_earlier_frames_are_answered() {
 }
 
 #[test]
-fn options_that_need_the_whole_recording_are_refused() {
-    let place = Place::with_model();
-    place.all_fail(&[
-        "forecast - --model run --last => --last",
-        "goals - --model run => ddl forecast -",
-        // Standard input is empty.
-        "forecast - --model run => holds no tracks",
-        // An existing file stays unchanged.
-        "forecast - --model run --output tracks.csv => holds no tracks",
-    ]);
-}
-
-#[test]
 fn implausible_input_is_reported_once() {
     let place = Place::empty();
     let mut pixels = own_tracks::three_pedestrians(12);

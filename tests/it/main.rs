@@ -23,6 +23,7 @@ mod live_memory;
 mod other_program;
 mod own_recordings;
 mod packed;
+mod refusals;
 mod regions;
 mod scenes;
 mod tracks_as_they_come;

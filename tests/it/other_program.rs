@@ -142,13 +142,6 @@ forecasts.jsonl --window-rule published => match no pedestrian of the windows
     place.all_fail(&[
         "evaluate --convention simulated --fold doorway --forecasts forecasts.jsonl => \
          the windows are of doorway, the file also of plaza",
-        "windows --convention simulated => corridor, crossing, plaza",
-        "evaluate => --data",
-    ]);
-    place.all_refused(&[
-        "evaluate --model run --forecasts forecasts.jsonl => ",
-        "evaluate --model run --fold plaza => ",
-        "evaluate --forecasts forecasts.jsonl --fold plaza --window-rule all => ",
     ]);
 }
 

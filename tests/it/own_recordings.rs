@@ -1,6 +1,5 @@
 //! A user's own recordings: summary and evaluation with `ddl data`, `ddl evaluate --data`, `ddl windows --data`.
 
-use ddl_tests::own_tracks;
 use ddl_tests::place::{Place, json};
 use serde_json::Value;
 
@@ -62,36 +61,6 @@ fn unreadable_files_are_reported_together() {
     let finished = place.run("data mine --json");
     let read = &json::<Value>(&finished.stdout)["total"]["recordings"];
     assert_eq!((finished.code, read), (Some(1), &2.into()));
-}
-
-#[test]
-fn errors_with_own_recordings_give_advice() {
-    let place = Place::with_recordings();
-    std::fs::create_dir(place.at("empty")).unwrap();
-    // A folder with a recording of ETH/UCY.
-    place.write("star/zara01.csv", "");
-    place.write_tracks("short.csv", &own_tracks::three_pedestrians(12));
-    place.all_fail(&[
-        "train --out run => your own recordings (--data FOLDER)",
-        "train --data mine --out run --last-epoch-only => --patience 0",
-        "train --data empty --out run => holds no recordings",
-        "train --data nowhere --out run => cannot read nowhere",
-        "train --data mine --convention own --fold attic --out run => it has lobby, yard",
-        "train --data mine --fold lobby --out run => add --convention own",
-        "train --data mine --out run --validation 0 --patience 3 => patience of 3 epochs",
-        "train --convention simulated --fold plaza --fps 25 --out run => your own recordings",
-        "train --data mine --validation-recordings nope --out run => \
-         \"nope\" is not one of these recordings: lobby, yard",
-        "baselines --convention own --data mine --fold none => it has lobby, yard",
-        "evaluate --model hotel --convention own => --data FOLDER",
-        "evaluate --data mine --fold attic => it has lobby, yard",
-        "windows --data mine --fold attic => it has lobby, yard",
-        "evaluate --data star --fold attic => add --convention own",
-        "windows --data star --fold attic => add --convention own",
-        "evaluate --data mine --window-rule complete => leave out --window-rule",
-        "forecast short.csv --region 0.5,0.50 => 0.5 twice",
-        "evaluate --model hotel --convention own --data short.csv => 20 consecutive time steps",
-    ]);
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use ddl::data::Convention;
 use ddl::eval::ResultRow;
 use ddl::report::Report;
-use ddl::{BuiltinModel, ModelSource, Protocol, Variant};
+use ddl::{BuiltinModel, ModelSource, Protocol};
 use ddl_tests::place::Place;
-use ddl_tests::{crowd, drawn_model, folder_contents, recordings};
+use ddl_tests::{folder_contents, recordings};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -90,29 +90,6 @@ fn every_command_accepts_a_packed_model() {
     let _ = place.ok("pack --model packed --out again");
     let same = place.read("packed") == place.read("again");
     assert!(same, "packing a packed model changes it");
-}
-
-#[test]
-fn unsupported_uses_of_a_packed_model_are_reported() {
-    let place = Place::with_model();
-    let _ = place.ok("pack --model run --out packed");
-    let mut config = drawn_model::config(Variant::Full);
-    config.goals = ddl::GoalRecipe::retrieved(1);
-    drawn_model::write(config, &crowd::windows(20, 10), &place.at("retrieved"));
-    place.all_fail(&[
-        "evaluate --model packed --protocol published => no expert library",
-        "evaluate --model zara1 --convention simulated => cannot be evaluated on `simulated`",
-        "evaluate --fold plaza --convention simulated => star",
-        "evaluate --fold corridor => zara1",
-        "pack --model retrieved --out new => --goals proposed",
-        // Weights alone are not a model, and the message says so.
-        "forecast tracks.csv --model run/model.safetensors => ddl pack",
-    ]);
-    // A model is evaluated only on the scene left out in training.
-    place.all_refused(&[
-        "evaluate --model packed --fold plaza => ",
-        "evaluate --model zara1 --fold eth => ",
-    ]);
 }
 
 #[derive(Debug, Deserialize)]

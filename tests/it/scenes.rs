@@ -134,37 +134,3 @@ fn occupancy_has_the_formats_of_maps() {
             && place.text("grids/9_4.80s.yaml").contains("9_4.80s.pgm")
     );
 }
-
-#[test]
-fn wrong_plans_and_areas_are_named() {
-    let place = place();
-    let risk = "risk tracks.csv --fps 2.5 --plan";
-    for (name, plan, words) in [
-        ("no_y", "t,x\n0,1\n", "no column `y`"),
-        ("more", "t,x,y,z\n0,1,1,1\n", "unknown column `z`"),
-        ("empty", "t,x,y\n", "no rows"),
-        ("text", "t,x,y\n0,1,left\n", "line: 2"),
-        ("nan", "t,x,y\n0,NaN,1\n", "x is NaN"),
-        ("order", "t,x,y\n1,1,1\n0,1,1\n", "sort the rows by time"),
-        ("frames", "t,x,y\n100,1,1\n200,1,1\n", "in seconds from the moment"),
-        (
-            "torn",
-            "plan,t,x,y\na,0,1,1\nb,0,1,1\na,1,1,1\n",
-            "do not stand together",
-        ),
-    ] {
-        place.write(&format!("{name}.csv"), plan);
-        place.fails(&format!("{risk} {name}.csv"), &[name, words]);
-    }
-    place.fails("risk tracks.csv --fps 2.5 --plan none.csv", &["none.csv"]);
-    place.fails("risk tracks.csv --fps 2.5 --plan robot.csv --within -1", &["0 or more"]);
-    place.fails("forecast tracks.csv --fps 2.5 --joint --plan plans.csv", &["2 plans"]);
-    place.fails("occupancy tracks.csv --fps 2.5 --cell 0", &["size of a cell"]);
-    place.fails("occupancy tracks.csv --fps 2.5 --cell 0.0001", &["larger cells"]);
-    place.fails("occupancy tracks.csv --fps 2.5 --format npy", &["--folder"]);
-    place.all_refused(&[
-        "occupancy tracks.csv --fps 2.5 --area 1,2,3 => four numbers",
-        "forecast tracks.csv --fps 2.5 --plan robot.csv => --joint",
-        "forecast tracks.csv --fps 2.5 --joint --one => cannot be used with",
-    ]);
-}

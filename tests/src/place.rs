@@ -147,16 +147,6 @@ impl Place {
         folder_contents::assert_same(before, &folder_contents::read(self.path()));
     }
 
-    /// Commands whose arguments must be refused, with exit code 2 and these words: `COMMAND => WORDS`.
-    pub fn all_refused(&self, lines: &[&str]) {
-        for line in lines {
-            let (line, words) = line.split_once(" => ").expect("a command and words");
-            let finished = self.run(line);
-            assert_eq!(finished.code, Some(2), "{finished:#?}");
-            assert!(finished.stderr.contains(words), "{finished:#?}");
-        }
-    }
-
     /// Runs the program with this text as its standard input.
     pub fn run_on(&self, input: &str, line: &str) -> Finished {
         self.write("standard input", input);

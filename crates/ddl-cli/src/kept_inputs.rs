@@ -20,7 +20,7 @@ const NO_TEXTS: [&str; 3] = ["out", "folder", "memory"];
 const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
 
 /// Names of files that commands write into the folder of `--out`, and those of a run.
-const WRITTEN: [&str; 15] = [
+const WRITTEN: [&str; 14] = [
     "config.json",
     "evaluation.json",
     "experts.safetensors",
@@ -35,7 +35,6 @@ const WRITTEN: [&str; 15] = [
     "report.html",
     "report.json",
     "report.md",
-    "report.tex",
 ];
 
 /// A path among the arguments, with the name of its option as users type it.

@@ -69,7 +69,6 @@ pub(crate) fn tell_doubts_of_ego(ego: Option<&str>, plans: &[&Plan], window: &Wi
 /// A plan that starts farther than this from the pedestrian who follows it is doubtful, metres.
 const FAR: f64 = 2.0;
 
-/// A plan of a file.
 #[derive(Debug)]
 pub(crate) struct NamedPlan {
     /// The text of its column `plan`; empty in a file of one plan.

@@ -34,8 +34,9 @@ pub use stream::{Frame, FrameReader};
 pub use write::write_recording;
 
 use crate::error::DataError;
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::NOT_UTF8;
+use crate::format::text::TextFile;
 use crate::recording::Recording;
 
 /// Reads one file of tracks. The recording is named after the file, without its extension.
@@ -86,18 +87,32 @@ pub fn parse_columns(
     format: Format,
     choice: &ColumnChoice,
 ) -> Result<Recording, DataError> {
+    let read = rows_of(bytes, format, choice).map_err(|error| error.in_file(origin))?;
+    let mut recording = rows::into_recording(read.rows, origin)?;
+    // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
+    recording.rate = match (read.rate, recording.time_unit()) {
+        (rate, _) if format == Format::TrajNet => rate,
+        (rate, None) => rate.map(|rate| rate / recording.frame_step() as f64),
+        (_, Some(_)) => None,
+    };
+    recording.notes = read.notes;
+    Ok(recording)
+}
+
+/// The observations of a file.
+fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFile, Misread> {
     if COMPRESSED.iter().any(|magic| bytes.starts_with(magic)) {
         let problem = "the file is compressed; unpack it, or export the spreadsheet as csv";
-        return Err(FilePlace::line(1).wrong(origin, problem).into());
+        return Err(FilePlace::line(1).wrong(problem));
     }
     if bytes.starts_with(b"PAR1") {
         let problem = "the file is Parquet; write it as csv first (python -c \"import pandas; \
                        pandas.read_parquet('FILE').to_csv('FILE.csv')\"), or give its columns to the Python package";
-        return Err(FilePlace::line(1).wrong(origin, problem).into());
+        return Err(FilePlace::line(1).wrong(problem));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()].split(|&byte| byte == b'\n').count();
-        FilePlace::line(line).wrong(origin, NOT_UTF8)
+        FilePlace::line(line).wrong(NOT_UTF8)
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -106,31 +121,20 @@ pub fn parse_columns(
         Format::StarCsv | Format::TrajNet | Format::Vsp | Format::Edinburgh
     ) {
         let allowed = choice.refuse_for(format);
-        allowed.map_err(|problem| FilePlace::line(1).wrong(origin, problem))?;
+        allowed.map_err(|problem| FilePlace::line(1).wrong(problem))?;
     }
-    let (mut rate, mut frame_rate, mut notes) = (None, None, Vec::new());
-    let rows = match format {
-        Format::StarCsv => star_csv::parse(text, origin),
-        Format::TrajNet => trajnet::parse(text, origin).map(|(rows, stated)| {
-            rate = stated.frames_a_second;
-            rows
-        }),
-        _ => {
-            let file = match format {
-                Format::Vsp => vsp::parse(text, origin, choice),
-                Format::Edinburgh => edinburgh::parse(text, origin, choice),
-                _ => text::parse(text, origin, format, choice),
-            }?;
-            (frame_rate, notes) = (file.rate, file.notes);
-            Ok(file.rows)
-        }
-    }?;
-    let mut recording = rows::into_recording(rows, origin)?;
-    // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
-    let of_rows = frame_rate.filter(|_| recording.time_unit().is_none());
-    let of_rows = of_rows.map(|rate: f64| rate / recording.frame_step() as f64);
-    (recording.rate, recording.notes) = (rate.or(of_rows), notes);
-    Ok(recording)
+    let without_notes = |rows, rate| TextFile {
+        rows,
+        notes: Vec::new(),
+        rate,
+    };
+    match format {
+        Format::StarCsv => Ok(without_notes(star_csv::parse(text)?, None)),
+        Format::TrajNet => trajnet::parse(text).map(|(rows, stated)| without_notes(rows, stated.frames_a_second)),
+        Format::Vsp => vsp::parse(text, choice),
+        Format::Edinburgh => edinburgh::parse(text, choice),
+        _ => text::parse(text, format, choice),
+    }
 }
 
 /// First bytes of files compressed by gzip, zip (also spreadsheets), bzip2, xz and zstd.

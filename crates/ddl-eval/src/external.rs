@@ -18,14 +18,11 @@ mod table_rows;
 mod trajnet;
 mod write;
 
-use std::fmt;
 use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::str::FromStr;
 
 use ddl_core::Window;
-use ddl_data::UnknownName;
 
 pub use error::ExternalError;
 pub use matched::{Coverage, Matched};
@@ -49,38 +46,14 @@ pub enum ExternalFormat {
 }
 
 impl ExternalFormat {
-    /// All formats.
-    pub const ALL: [Self; 3] = [Self::JsonLines, Self::Table, Self::TrajNet];
-
-    /// The file extension of the format: `jsonl`, `csv` or `ndjson`.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::JsonLines => "jsonl",
-            Self::Table => "csv",
-            Self::TrajNet => "ndjson",
-        }
-    }
-
     /// The format of a file by its extension, in upper or lower case; JSON lines for other extensions.
     pub fn of_file(path: &Path) -> Self {
-        let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
-        let named = extension.to_ascii_lowercase().parse();
-        named.unwrap_or(Self::JsonLines)
-    }
-}
-
-impl fmt::Display for ExternalFormat {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for ExternalFormat {
-    type Err = UnknownName;
-
-    fn from_str(word: &str) -> Result<Self, UnknownName> {
-        let expected = "jsonl, csv, ndjson";
-        UnknownName::find(word, &Self::ALL, Self::name, "format of forecasts", expected)
+        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+        match extension.to_str() {
+            Some("csv") => Self::Table,
+            Some("ndjson") => Self::TrajNet,
+            _ => Self::JsonLines,
+        }
     }
 }
 

@@ -1,7 +1,6 @@
-//! A page of results as a list of parts, rendered as markdown, HTML or LaTeX.
+//! A page of results as a list of parts, rendered as markdown or HTML.
 
 mod html;
-mod latex;
 mod markdown;
 mod parts;
 mod table;

@@ -37,11 +37,9 @@ pub(crate) struct Literature {
     pub(crate) measured: Vec<BaselineReference>,
 }
 
-/// One row of a published table.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct PublishedRow {
-    /// Name of the method.
     pub(crate) method: String,
     /// Who published the method, and where.
     pub(crate) source: String,
@@ -59,7 +57,6 @@ pub(crate) struct PublishedRow {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JointRow {
-    /// Name of the method.
     pub(crate) method: String,
     /// Who published it, and where.
     pub(crate) source: String,

@@ -93,7 +93,7 @@ impl Report {
         self.document().to_markdown()
     }
 
-    /// The report as a document, for markdown, HTML or LaTeX.
+    /// The report as a document, for markdown or HTML.
     pub(crate) fn document(&self) -> Document {
         content::document(&self.title, &self.rows)
     }
@@ -138,18 +138,12 @@ impl Report {
         Self::new(read.title, read.rows)
     }
 
-    /// The names and contents of its files: `report.md`, `report.tex` and `report.json`. `report.tex` holds the tables
-    /// for a paper, to be included with `\input`; they need `booktabs` and `adjustbox`.
+    /// The names and contents of its files: `report.md` and `report.json`.
     ///
     /// # Errors
     /// As [`Report::to_json`].
-    pub fn files(&self) -> Result<[(&'static str, String); 3], ReportError> {
-        let document = self.document();
-        Ok([
-            ("report.md", document.to_markdown()),
-            ("report.tex", document.to_latex()),
-            ("report.json", self.to_json()?),
-        ])
+    pub fn files(&self) -> Result<[(&'static str, String); 2], ReportError> {
+        Ok([("report.md", self.to_markdown()), ("report.json", self.to_json()?)])
     }
 
     /// Reads a `report.json`.

@@ -28,7 +28,7 @@ pub(crate) struct Baselines {
     /// [default: all]
     #[arg(long, value_parser = at_least_one)]
     test_pedestrians: Option<usize>,
-    /// Folder for the report: report.html, report.md, report.tex, report.json and figures [default: only print]
+    /// Folder for the report: report.html, report.md, report.json and figures [default: only print]
     #[arg(long)]
     out: Option<PathBuf>,
     #[command(flatten)]

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 /// Combine results into a page, tables and figures
 ///
-/// Writes report.html, report.md, report.tex, report.json, moments.json and figures.
+/// Writes report.html, report.md, report.json, moments.json and figures.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl report runs/eth runs/hotel --out runs")]

@@ -9,7 +9,6 @@ use ddl::data::{Convention, Recording, Window, WindowRule};
 pub(crate) const NO_WINDOW: &str = "no pedestrian in these recordings was observed at 20 consecutive time steps; are \
                                     they cut short, or at another rate?";
 
-/// The test windows of a fold.
 #[derive(Debug, Args)]
 pub(crate) struct TestWindows {
     /// Data convention: star, social-gan, simulated or own [default: star; own if --data names recordings that are not

@@ -327,7 +327,6 @@ impl Train {
         Ok(())
     }
 
-    /// Sets the sizes that are requested.
     fn set_sizes(&self, star: &mut StarConfig) {
         set(&mut star.backbone, self.backbone);
         set(&mut star.feed_forward_width, self.feed_forward_width);

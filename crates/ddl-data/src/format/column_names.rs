@@ -115,7 +115,6 @@ pub(super) fn role_names() -> impl Iterator<Item = (Role, &'static str)> {
     NAMES.iter().map(move |(role, names)| (*role, first(names)))
 }
 
-/// The unit of that name.
 fn unit_of<T: Copy>(units: &[(&str, T)], name: &str) -> Option<T> {
     let found = units.iter().find(|(names, _)| is_one_of(names, name));
     found.map(|(_, unit)| *unit)

@@ -38,7 +38,7 @@ pub(super) fn rate_of(comment: &str) -> Option<f64> {
 pub(super) fn names_in_comment(comment: &str, count: usize, choice: &ColumnChoice) -> Option<Vec<String>> {
     let text = comment.trim_start().trim_start_matches(COMMENTS).trim();
     let text = text.rsplit_once(':').map_or(text, |(_, names)| names.trim());
-    let names = Separator::of(text).fields(text, 1, "").ok()?;
+    let names = Separator::of(text).fields(text, 1).ok()?;
     let names: Vec<String> = names.into_iter().map(std::borrow::Cow::into_owned).collect();
     let is_known =
         |name: &&String| is_known(name) || choice.roles.iter().any(|(_, chosen)| chosen.eq_ignore_ascii_case(name));

@@ -1,9 +1,8 @@
 //! The tracks of the Edinburgh forum: a line `TRACK.R12=[[x y frame];[x y frame];...];` for each pedestrian.
 
-use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
 use crate::format::field;
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 
@@ -22,7 +21,7 @@ pub(super) fn is_first(line: &str) -> bool {
     line.starts_with(TRACK) || line.starts_with(PROPERTIES)
 }
 
-pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
+pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misread> {
     let per_metre = if choice.is_mapped { 1.0 } else { PER_METRE };
     let (mut rows, mut repeated) = (Vec::new(), 0);
     for (line, text) in (1..).zip(text.lines()) {
@@ -33,12 +32,12 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
         let place = FilePlace::line(line);
         let track = text.strip_prefix(TRACK).and_then(|text| text.split_once('='));
         let Some((pedestrian, points)) = track else {
-            return Err(place.wrong(origin, "expected a track such as TRACK.R1=[[269 466 12];[270 465 13]];"));
+            return Err(place.wrong("expected a track such as TRACK.R1=[[269 466 12];[270 465 13]];"));
         };
         if !points.trim_end_matches(';').ends_with("]]") {
-            return Err(place.wrong(origin, "the track does not end with ]]; is the file cut off?"));
+            return Err(place.wrong("the track does not end with ]]; is the file cut off?"));
         }
-        let pedestrian = place.read(origin, field::integer(pedestrian, "the number of the track"))?;
+        let pedestrian = place.read(field::integer(pedestrian, "the number of the track"))?;
         let mut last_frame = None;
         for point in points.split(';').map(|point| point.replace(['[', ']'], " ")) {
             let values: Vec<&str> = point.split_ascii_whitespace().collect();
@@ -46,14 +45,11 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
                 if values.is_empty() {
                     continue;
                 }
-                return Err(place.wrong(
-                    origin,
-                    format!("expected x, y and frame, found {:?}", field::quoted(&point)),
-                ));
+                return Err(place.wrong(format!("expected x, y and frame, found {:?}", field::quoted(&point))));
             };
-            let frame = place.read(origin, field::integer(frame, "frame"))?;
+            let frame = place.read(field::integer(frame, "frame"))?;
             let number = |text: &str, name: &str| field::coordinate(text, name, per_metre);
-            let position = [place.read(origin, number(x, "x"))?, place.read(origin, number(y, "y"))?];
+            let position = [place.read(number(x, "x"))?, place.read(number(y, "y"))?];
             if last_frame.replace(frame) == Some(frame) {
                 repeated += 1;
                 continue;

@@ -53,7 +53,6 @@ const PLAIN: Layout = Layout {
     note: None,
 };
 
-/// All layouts.
 pub(super) static LAYOUTS: [Layout; 11] = [
     PLAIN,
     Layout {

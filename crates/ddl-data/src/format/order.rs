@@ -18,7 +18,6 @@ pub(super) enum Order {
     Unclear,
 }
 
-/// The tracks of a reading.
 struct Tracks {
     /// Median distance between successive rows of a pedestrian.
     step: f64,

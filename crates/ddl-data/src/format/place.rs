@@ -29,16 +29,30 @@ impl FilePlace {
         self.line as usize
     }
 
-    pub(super) fn wrong(self, origin: &str, problem: impl Into<String>) -> FormatError {
-        FormatError {
-            origin: origin.to_owned(),
-            line: self.line_number(),
-            field: self.field.map(|field| field.get() as usize),
-            problem: problem.into(),
-        }
+    pub(super) fn wrong(self, problem: impl Into<String>) -> Misread {
+        let problem = problem.into();
+        Misread { place: self, problem }
     }
 
-    pub(super) fn read<T>(self, origin: &str, read: Result<T, String>) -> Result<T, FormatError> {
-        read.map_err(|problem| self.wrong(origin, problem))
+    pub(super) fn read<T>(self, read: Result<T, String>) -> Result<T, Misread> {
+        read.map_err(|problem| self.wrong(problem))
+    }
+}
+
+/// What is wrong at a place, in a file that the callers know.
+#[derive(Debug)]
+pub(super) struct Misread {
+    place: FilePlace,
+    problem: String,
+}
+
+impl Misread {
+    pub(super) fn in_file(self, origin: &str) -> FormatError {
+        FormatError {
+            origin: origin.to_owned(),
+            line: self.place.line_number(),
+            field: self.place.field.map(|field| field.get() as usize),
+            problem: self.problem,
+        }
     }
 }

@@ -5,10 +5,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use ddl_core::{PedestrianId, PedestrianNames, Position};
 
 use crate::clock::TimeUnit;
-use crate::error::{DataError, FormatError};
+use crate::error::DataError;
 use crate::format::field::PedestrianField;
 use crate::format::numbering::Numbering;
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate, when};
 use crate::observation::Observation;
 use crate::recording::Recording;
@@ -45,22 +45,8 @@ type Placed = (Observation, FilePlace);
 
 /// The recording of all rows, with an inferred frame step.
 pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {
-    if rows.is_empty() {
-        return Err(FilePlace::line(1).wrong(origin, EMPTY).into());
-    }
-    if let Some(row) = rows.iter().find(|row| row.scene.is_some()) {
-        let problem = "a file holds one recording, but this one names scenes; pipe it to `ddl forecast -`, or make a \
-                       file of each scene without the column";
-        return Err(row.place.wrong(origin, problem).into());
-    }
-    let unit = rows[0].unit;
-    if let Some(row) = rows.iter().find(|row| row.unit != unit) {
-        return Err(row.place.wrong(origin, MIXED_TIMES).into());
-    }
-    let restarts = restarts(&rows);
-    let (mut placed, names) = numbered(rows);
-    refuse_duplicates(&mut placed, &names, unit, origin)?;
-    let observations = placed.into_iter().map(|(seen, _)| seen).collect();
+    let (restarts, unit) = (restarts(&rows), rows.first().and_then(|row| row.unit));
+    let (observations, names) = observations(rows, unit).map_err(|error| error.in_file(origin))?;
     let recording = Recording::in_usual_step(origin, observations);
     let mut recording = recording.map_err(|source| DataError::Recording {
         name: origin.to_owned(),
@@ -68,6 +54,24 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
     })?;
     recording.restarts = restarts;
     Ok(recording.with_names(names).with_time_unit(unit))
+}
+
+/// The observations of the rows of one recording, all of this unit, each pedestrian at most once in a frame.
+fn observations(rows: Vec<TrackRow>, unit: Option<TimeUnit>) -> Result<(Vec<Observation>, PedestrianNames), Misread> {
+    if rows.is_empty() {
+        return Err(FilePlace::line(1).wrong(EMPTY));
+    }
+    if let Some(row) = rows.iter().find(|row| row.scene.is_some()) {
+        let problem = "a file holds one recording, but this one names scenes; pipe it to `ddl forecast -`, or make a \
+                       file of each scene without the column";
+        return Err(row.place.wrong(problem));
+    }
+    if let Some(row) = rows.iter().find(|row| row.unit != unit) {
+        return Err(row.place.wrong(MIXED_TIMES));
+    }
+    let (mut placed, names) = numbered(rows);
+    refuse_duplicates(&mut placed, &names, unit)?;
+    Ok((placed.into_iter().map(|(seen, _)| seen).collect(), names))
 }
 
 /// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a
@@ -116,12 +120,7 @@ fn restarts(rows: &[TrackRow]) -> usize {
 }
 
 /// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.
-fn refuse_duplicates(
-    rows: &mut [Placed],
-    names: &PedestrianNames,
-    unit: Option<TimeUnit>,
-    origin: &str,
-) -> Result<(), FormatError> {
+fn refuse_duplicates(rows: &mut [Placed], names: &PedestrianNames, unit: Option<TimeUnit>) -> Result<(), Misread> {
     let key = |(seen, _): &Placed| (seen.frame, seen.pedestrian);
     rows.sort_unstable_by_key(|row| (key(row), row.1));
     let pairs = rows.windows(2).filter(|pair| key(&pair[0]) == key(&pair[1]));
@@ -130,7 +129,7 @@ fn refuse_duplicates(
         Some(pair) => {
             let (frame, pedestrian) = key(&pair[1]);
             let problem = duplicate(names.of(pedestrian), &when(frame, unit), pair[0].1.line_number());
-            Err(pair[1].1.wrong(origin, problem))
+            Err(pair[1].1.wrong(problem))
         }
     }
 }

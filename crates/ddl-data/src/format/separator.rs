@@ -2,9 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::error::FormatError;
 use crate::format::field::trimmed;
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 
 /// What stands between the fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,7 +16,6 @@ pub(super) enum Separator {
 }
 
 impl Separator {
-    /// The separator of a line.
     pub(super) fn of(line: &str) -> Self {
         let count = |separator: char| line.matches(separator).count();
         let (commas, semicolons) = (count(','), count(';'));
@@ -50,20 +48,14 @@ impl Separator {
     }
 
     /// The fields of a line, without blanks around them and quotes.
-    pub(super) fn fields<'a>(self, text: &'a str, line: usize, origin: &str) -> Result<Vec<Cow<'a, str>>, FormatError> {
+    pub(super) fn fields(self, text: &str, line: usize) -> Result<Vec<Cow<'_, str>>, Misread> {
         let mut fields = Vec::new();
-        self.split(text, line, origin, &mut fields)?;
+        self.split(text, line, &mut fields)?;
         Ok(fields)
     }
 
     /// As [`fields`](Self::fields), into a list that is used again for the next line.
-    pub(super) fn split<'a>(
-        self,
-        text: &'a str,
-        line: usize,
-        origin: &str,
-        fields: &mut Vec<Cow<'a, str>>,
-    ) -> Result<(), FormatError> {
+    pub(super) fn split<'a>(self, text: &'a str, line: usize, fields: &mut Vec<Cow<'a, str>>) -> Result<(), Misread> {
         fields.clear();
         if self == Self::Blanks {
             let words = text.split_ascii_whitespace();
@@ -76,11 +68,11 @@ impl Separator {
             match byte {
                 b'\r' | b'"' if plain.contains('\r') => {
                     let problem = "a carriage return stands within the line; end each line with a line feed";
-                    return Err(FilePlace::line(line).wrong(origin, problem));
+                    return Err(FilePlace::line(line).wrong(problem));
                 }
                 // A CSV reader is costly to create for every line, and is only needed for quoted fields.
                 b'"' => {
-                    *fields = self.quoted_fields(text, line, origin)?;
+                    *fields = self.quoted_fields(text, line)?;
                     return Ok(());
                 }
                 _ if byte == letter => {
@@ -94,7 +86,7 @@ impl Separator {
         Ok(())
     }
 
-    fn quoted_fields<'a>(self, text: &'a str, line: usize, origin: &str) -> Result<Vec<Cow<'a, str>>, FormatError> {
+    fn quoted_fields(self, text: &str, line: usize) -> Result<Vec<Cow<'_, str>>, Misread> {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -103,7 +95,7 @@ impl Separator {
             .from_reader(text.as_bytes());
         let mut record = csv::StringRecord::new();
         let read = reader.read_record(&mut record);
-        read.map_err(|error| FilePlace::line(line).wrong(origin, format!("not a well-formed table: {error}")))?;
+        read.map_err(|error| FilePlace::line(line).wrong(format!("not a well-formed table: {error}")))?;
         Ok(record.iter().map(|field| field.to_owned().into()).collect())
     }
 }
@@ -119,8 +111,8 @@ mod tests {
             text in "[a0.,; \t\u{a0}\"]{0,12}[a0,;]\r?\n?",
             separator in prop_oneof![Just(Separator::Comma), Just(Separator::Semicolon)],
         ) {
-            let fields = separator.fields(&text, 1, "t").unwrap();
-            prop_assert_eq!(fields, separator.quoted_fields(&text, 1, "t").unwrap());
+            let fields = separator.fields(&text, 1).unwrap();
+            prop_assert_eq!(fields, separator.quoted_fields(&text, 1).unwrap());
         }
     }
 }

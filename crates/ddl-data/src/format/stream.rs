@@ -16,7 +16,7 @@ use crate::format::comments::{is_comment, rate_of};
 use crate::format::field::PedestrianField;
 use crate::format::kind::Format;
 use crate::format::numbering::Numbering;
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::{MIXED_TIMES, NOT_UTF8, duplicate, when};
 use crate::format::rows::TrackRow;
 use crate::format::track_columns::TrackColumns;
@@ -287,6 +287,7 @@ impl<R: BufRead> FrameReader<R> {
 
     fn row(&mut self, text: &str) -> Result<Option<TrackRow>, FormatError> {
         let (line, origin) = (self.lines, self.origin.as_str());
+        let in_file = |error: Misread| error.in_file(origin);
         let Some(kind) = &mut self.kind else {
             if is_comment(text) {
                 self.frame_rate = self.frame_rate.or(rate_of(text));
@@ -300,16 +301,16 @@ impl<R: BufRead> FrameReader<R> {
             let format = Format::guess_with("".as_ref(), begin.as_bytes(), &self.choice)?;
             if matches!(format, Format::Vsp | Format::Edinburgh) {
                 let problem = format!("lines of the format {format} are not in order of time; give the file");
-                return Err(FilePlace::line(line).wrong(origin, problem));
+                return Err(in_file(FilePlace::line(line).wrong(problem)));
             }
             let (kind, is_header) = if format == Format::TrajNet {
-                self.choice
-                    .refuse_for(format)
-                    .map_err(|problem| FilePlace::line(line).wrong(origin, problem))?;
+                let allowed = self.choice.refuse_for(format);
+                FilePlace::line(line).read(allowed).map_err(in_file)?;
                 (Kind::TrajNet, false)
             } else {
                 let comments: Vec<&str> = comments.lines().collect();
-                let (mut columns, is_header) = TrackColumns::of((format, &self.choice), &comments, text, line, origin)?;
+                let columns = TrackColumns::of((format, &self.choice), &comments, text, line);
+                let (mut columns, is_header) = columns.map_err(in_file)?;
                 columns.tell_layout();
                 self.frame_rate = self.frame_rate.or(columns.rate());
                 (Kind::Text(Box::new(columns)), is_header)
@@ -317,10 +318,11 @@ impl<R: BufRead> FrameReader<R> {
             self.kind = Some(kind);
             return if is_header { Ok(None) } else { self.row(text) };
         };
-        match kind {
-            Kind::Text(columns) => columns.row_of_line(text, line, origin),
-            Kind::TrajNet => trajnet::observation(text, line, origin, &mut self.rate),
-        }
+        let row = match kind {
+            Kind::Text(columns) => columns.row_of_line(text, line),
+            Kind::TrajNet => trajnet::observation(text, line, &mut self.rate),
+        };
+        row.map_err(in_file)
     }
 
     /// Adds an observation. If it begins a new frame of its scene, returns the previous frame of the scene.
@@ -479,6 +481,6 @@ impl<R: BufRead> FrameReader<R> {
     }
 
     fn wrong(&self, problem: impl Into<String>) -> FormatError {
-        FilePlace::line(self.lines).wrong(&self.origin, problem)
+        FilePlace::line(self.lines).wrong(problem).in_file(&self.origin)
     }
 }

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 use ddl_core::Position;
 
 use crate::clock::TimeUnit;
-use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::LengthUnit;
 use crate::format::comments::{is_comment, names_in_comment};
@@ -13,7 +12,7 @@ use crate::format::field::{self, PedestrianField};
 use crate::format::header::{Header, TimeColumn, first_of};
 use crate::format::kind::Format;
 use crate::format::layouts::{Layout, Place};
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::field_count;
 use crate::format::row_filter::RowFilter;
 use crate::format::rows::TrackRow;
@@ -57,21 +56,17 @@ impl TrackColumns {
         comments: &[&str],
         first: &str,
         line: usize,
-        origin: &str,
-    ) -> Result<(Self, bool), FormatError> {
+    ) -> Result<(Self, bool), Misread> {
         let (columns, is_header) = if let Some(layout) = Layout::of(format) {
             let columns = Self::laid_out(layout, Separator::of_numbers(first), choice);
-            (
-                columns.map_err(|problem| FilePlace::line(line).wrong(origin, problem))?,
-                false,
-            )
+            (columns.map_err(|problem| FilePlace::line(line).wrong(problem))?, false)
         } else {
-            Self::with_header(choice, comments, (first, line), origin)?
+            Self::with_header(choice, comments, (first, line))?
         };
         if choice.is_mapped && columns.header.has_unit {
             let problem = "the columns say that positions are in metres or parts of them, and the homography maps \
                            pixels; give --homography none, or --unit px if they are pixels";
-            return Err(FilePlace::line(line).wrong(origin, problem));
+            return Err(FilePlace::line(line).wrong(problem));
         }
         Ok((columns, is_header))
     }
@@ -81,10 +76,9 @@ impl TrackColumns {
         choice: &ColumnChoice,
         comments: &[&str],
         (first, line): (&str, usize),
-        origin: &str,
-    ) -> Result<(Self, bool), FormatError> {
+    ) -> Result<(Self, bool), Misread> {
         let separator = Separator::of(first);
-        let fields = separator.fields(first, line, origin)?;
+        let fields = separator.fields(first, line)?;
         if fields.iter().any(|field| field.parse::<f64>().is_ok())
             && let Some(names) = comments
                 .iter()
@@ -92,7 +86,7 @@ impl TrackColumns {
                 .find_map(|comment| names_in_comment(comment, fields.len(), choice))
         {
             let header = Header::of(&names.iter().map(String::as_str).collect::<Vec<_>>(), choice);
-            let header = header.map_err(|(_, problem)| FilePlace::line(1).wrong(origin, problem))?;
+            let header = header.map_err(|(_, problem)| FilePlace::line(1).wrong(problem))?;
             return Ok((Self::named(header, names, Separator::of_numbers(first), choice), false));
         }
         let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
@@ -103,7 +97,7 @@ impl TrackColumns {
             }
             Err((field, problem)) => {
                 let place = field.map_or(FilePlace::line(line), |index| FilePlace::field(line, index + 1));
-                Err(place.wrong(origin, problem))
+                Err(place.wrong(problem))
             }
         }
     }
@@ -180,18 +174,13 @@ impl TrackColumns {
     }
 
     /// The observation of a line of a stream; `None` where it is left out.
-    pub(super) fn row_of_line(
-        &mut self,
-        text: &str,
-        line: usize,
-        origin: &str,
-    ) -> Result<Option<TrackRow>, FormatError> {
+    pub(super) fn row_of_line(&mut self, text: &str, line: usize) -> Result<Option<TrackRow>, Misread> {
         let before = (self.header.time, self.assumed_unit);
-        let fields = self.separator.fields(text, line, origin)?;
+        let fields = self.separator.fields(text, line)?;
         if !self.is_comment(text, &fields) {
             self.look_at(fields.get(self.header.frame).map(|field| &**field));
         }
-        let row = self.row_of(text, &fields, line, origin);
+        let row = self.row_of(text, &fields, line);
         if row.is_err() {
             (self.header.time, self.assumed_unit) = before;
         }
@@ -214,22 +203,21 @@ impl TrackColumns {
         &mut self,
         rows: impl Iterator<Item = (usize, &'a str)> + Clone,
         most: usize,
-        origin: &str,
-    ) -> Result<Vec<TrackRow>, FormatError> {
+    ) -> Result<Vec<TrackRow>, Misread> {
         if self.header.time == TimeColumn::Time {
             let mut times = rows.clone().filter(|(_, text)| !is_comment(text));
             let time = times.find_map(|(line, text)| {
-                let fields = self.separator.fields(text, line, origin).ok()?;
+                let fields = self.separator.fields(text, line).ok()?;
                 fields.into_iter().nth(self.header.frame)
             });
             self.look_at(time.map(Cow::into_owned).as_deref());
         }
         let before = (self.filter.clone(), self.constant);
-        if let Some(read) = self.rows_in_known_unit(rows.clone(), most, origin)? {
+        if let Some(read) = self.rows_in_known_unit(rows.clone(), most)? {
             return Ok(read);
         }
         (self.filter, self.constant) = before;
-        Ok(self.rows_in_known_unit(rows, most, origin)?.unwrap_or_default())
+        Ok(self.rows_in_known_unit(rows, most)?.unwrap_or_default())
     }
 
     /// `None` as soon as a row shows that the frames are seconds.
@@ -237,11 +225,10 @@ impl TrackColumns {
         &mut self,
         rows: impl Iterator<Item = (usize, &'a str)>,
         most: usize,
-        origin: &str,
-    ) -> Result<Option<Vec<TrackRow>>, FormatError> {
+    ) -> Result<Option<Vec<TrackRow>>, Misread> {
         let (mut read, mut fields) = (Vec::with_capacity(most), Vec::new());
         for (line, text) in rows {
-            self.separator.split(text, line, origin, &mut fields)?;
+            self.separator.split(text, line, &mut fields)?;
             let time = fields
                 .get(self.header.frame)
                 .filter(|_| self.header.time == TimeColumn::Frame);
@@ -249,7 +236,7 @@ impl TrackColumns {
                 self.look_at(Some(time));
                 return Ok(None);
             }
-            read.extend(self.row_of(text, &fields, line, origin)?);
+            read.extend(self.row_of(text, &fields, line)?);
         }
         Ok(Some(read))
     }
@@ -330,20 +317,14 @@ impl TrackColumns {
     }
 
     /// The observation of a line; `None` where it is left out.
-    fn row_of(
-        &mut self,
-        text: &str,
-        fields: &[Cow<'_, str>],
-        line: usize,
-        origin: &str,
-    ) -> Result<Option<TrackRow>, FormatError> {
+    fn row_of(&mut self, text: &str, fields: &[Cow<'_, str>], line: usize) -> Result<Option<TrackRow>, Misread> {
         if self.is_comment(text, fields) {
             return Ok(None);
         }
         let (names, found) = (self.names.len(), fields.len());
         let beyond = fields.get(names..).unwrap_or_default();
         if found < self.needed || self.format != Format::Kitti && beyond.iter().any(|field| !field.is_empty()) {
-            return Err(FilePlace::line(line).wrong(origin, self.wrong_count(found)));
+            return Err(FilePlace::line(line).wrong(self.wrong_count(found)));
         }
         if !self.filter.counts(fields, self.header.place.columns()) {
             return Ok(None);
@@ -353,7 +334,7 @@ impl TrackColumns {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Frame | TimeColumn::Time => None,
         };
-        let frame = place(self.header.frame).read(origin, field::frame(&fields[self.header.frame], "frame", unit))?;
+        let frame = place(self.header.frame).read(field::frame(&fields[self.header.frame], "frame", unit))?;
         let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
@@ -361,22 +342,22 @@ impl TrackColumns {
         } else {
             field::pedestrian(name, "pedestrian")
         };
-        let pedestrian = place(self.header.pedestrian).read(origin, pedestrian)?;
+        let pedestrian = place(self.header.pedestrian).read(pedestrian)?;
         if matches!(self.format, Format::Mot | Format::MotTruth) && pedestrian == PedestrianField::Number(-1, None) {
             let problem = "the pedestrian is -1: these are detections without tracks; give the output of a tracker";
-            return Err(place(self.header.pedestrian).wrong(origin, problem));
+            return Err(place(self.header.pedestrian).wrong(problem));
         }
-        let position = self.position(fields, line, origin)?;
+        let position = self.position(fields, line)?;
         // Columns that are not used. Checking that they are numbers confirms the order of the columns.
         for &index in &self.numbers {
-            place(index).read(origin, field::number(&fields[index], &self.names[index]))?;
+            place(index).read(field::number(&fields[index], &self.names[index]))?;
         }
-        self.check_constant(fields, line, origin)?;
+        self.check_constant(fields, line)?;
         let scene = match self.header.scene {
             None => None,
             Some(index) => {
                 let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
-                Some(place(index).read(origin, scene)?)
+                Some(place(index).read(scene)?)
             }
         };
         Ok(Some(TrackRow {
@@ -389,7 +370,7 @@ impl TrackColumns {
         }))
     }
 
-    fn position(&self, fields: &[Cow<'_, str>], line: usize, origin: &str) -> Result<Position, FormatError> {
+    fn position(&self, fields: &[Cow<'_, str>], line: usize) -> Result<Position, Misread> {
         let per_metre = self.header.per_metre.unwrap_or(1.0);
         let axes = ["x", "y"];
         let number = |index: usize, name: &str| {
@@ -400,7 +381,7 @@ impl TrackColumns {
             } else {
                 field::coordinate(&fields[index], name, per_metre)
             };
-            FilePlace::field(line, index + 1).read(origin, coordinate)
+            FilePlace::field(line, index + 1).read(coordinate)
         };
         match self.header.place {
             Place::Point([x, y]) => Ok([number(x, axes[0])?, number(y, axes[1])?]),
@@ -421,7 +402,7 @@ impl TrackColumns {
     }
 
     #[expect(clippy::float_cmp, reason = "a constant is written with the same digits")]
-    fn check_constant(&mut self, fields: &[Cow<'_, str>], line: usize, origin: &str) -> Result<(), FormatError> {
+    fn check_constant(&mut self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
         let Some((index, first)) = &mut self.constant else {
             return Ok(());
         };
@@ -437,7 +418,7 @@ impl TrackColumns {
              {number}; if they are others, write their names above the rows: frame, pedestrian, x, y, and any others",
             self.names.join(", ")
         );
-        Err(FilePlace::field(line, *index + 1).wrong(origin, problem))
+        Err(FilePlace::field(line, *index + 1).wrong(problem))
     }
 
     fn wrong_count(&self, found: usize) -> String {

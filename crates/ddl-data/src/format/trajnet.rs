@@ -9,21 +9,20 @@ use serde_json::Value;
 use serde_json::value::RawValue;
 
 use crate::clock::TimeUnit;
-use crate::error::FormatError;
 use crate::format::field::{self, PedestrianField};
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::when;
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
 #[expect(clippy::float_cmp, reason = "a repeated track is written with the same digits")]
-pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, SceneRate), FormatError> {
+pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, SceneRate), Misread> {
     let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
     let mut rate = SceneRate::default();
     for (index, text) in text.lines().enumerate() {
-        let Some(row) = observation(text, index + 1, origin, &mut rate)? else {
+        let Some(row) = observation(text, index + 1, &mut rate)? else {
             continue;
         };
         let key = match &row.pedestrian {
@@ -45,18 +44,18 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, SceneRat
                     key.written(),
                     when(frame, row.unit)
                 );
-                return Err(place.wrong(origin, problem));
+                return Err(place.wrong(problem));
             }
         }
     }
     if rows.is_empty() && !text.trim().is_empty() && !text.contains("\"track\"") && !text.contains("\"scene\"") {
         let problem = r#"no line has a track; TrajNet++ writes {"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.0}}"#;
-        return Err(FilePlace::line(1).wrong(origin, problem));
+        return Err(FilePlace::line(1).wrong(problem));
     }
     if rows.is_empty() && text.contains("\"prediction_number\"") {
         let problem = "the tracks are forecasts (prediction_number), none is observed; score them with `ddl evaluate \
                        --forecasts`";
-        return Err(FilePlace::line(1).wrong(origin, problem));
+        return Err(FilePlace::line(1).wrong(problem));
     }
     Ok((rows, rate))
 }
@@ -134,14 +133,9 @@ fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value
 }
 
 /// The observation of a line, if it holds one. The rate of a scene line is recorded.
-pub(super) fn observation(
-    text: &str,
-    line: usize,
-    origin: &str,
-    rate: &mut SceneRate,
-) -> Result<Option<TrackRow>, FormatError> {
+pub(super) fn observation(text: &str, line: usize, rate: &mut SceneRate) -> Result<Option<TrackRow>, Misread> {
     let place = FilePlace::line(line);
-    place.read(origin, row(text, place, rate))
+    place.read(row(text, place, rate))
 }
 
 fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<TrackRow>, String> {

@@ -2,10 +2,9 @@
 
 use ddl_core::{Position, between};
 
-use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
 use crate::format::field;
-use crate::format::place::FilePlace;
+use crate::format::place::{FilePlace, Misread};
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 use crate::format::track_columns::PIXELS;
@@ -32,7 +31,7 @@ struct ControlPoint {
     line: usize,
 }
 
-pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
+pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misread> {
     let mut splines: Vec<(usize, usize, Vec<ControlPoint>)> = Vec::new();
     let mut promised = None;
     for (line, text) in (1..).zip(text.lines()) {
@@ -43,23 +42,20 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
             continue;
         }
         if said.contains("number of splines") {
-            promised = Some(place.read(origin, field::integer(values[0], "the number of splines"))?);
+            promised = Some(place.read(field::integer(values[0], "the number of splines"))?);
             continue;
         }
         if said.contains("control points") {
             let count = field::integer(values[0], "the number of control points");
-            splines.push((line, place.read(origin, count)?.max(0) as usize, Vec::new()));
+            splines.push((line, place.read(count)?.max(0) as usize, Vec::new()));
             continue;
         }
         let (Some((.., points)), [x, y, frame, _]) = (splines.last_mut(), &values[..]) else {
-            return Err(place.wrong(
-                origin,
-                "expected a control point: x, y, frame and the direction of gaze",
-            ));
+            return Err(place.wrong("expected a control point: x, y, frame and the direction of gaze"));
         };
         let number = |text: &str, name: &str| field::coordinate(text, name, 1.0);
-        let position = [place.read(origin, number(x, "x"))?, place.read(origin, number(y, "y"))?];
-        let frame = place.read(origin, field::integer(frame, "frame"))?;
+        let position = [place.read(number(x, "x"))?, place.read(number(y, "y"))?];
+        let frame = place.read(field::integer(frame, "frame"))?;
         points.push(ControlPoint { frame, position, line });
     }
     if let Some(promised) = promised.filter(|promised| *promised != splines.len() as i64) {
@@ -67,9 +63,9 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
             "the file has {} of its {promised} splines; is it cut off?",
             splines.len()
         );
-        return Err(FilePlace::line(1).wrong(origin, problem));
+        return Err(FilePlace::line(1).wrong(problem));
     }
-    let (rows, lost) = rows_of(&splines, origin)?;
+    let (rows, lost) = rows_of(&splines)?;
     let left_out = (lost > 0)
         .then(|| format!("left out: {lost} splines of one control point, or parts between two more than 20 s apart"));
     let pixels = (!choice.is_mapped).then(|| PIXELS.to_owned());
@@ -81,33 +77,33 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
 }
 
 /// The positions of all splines, and the number of parts that are left out.
-fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)], origin: &str) -> Result<(Vec<TrackRow>, usize), FormatError> {
+fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRow>, usize), Misread> {
     let (mut rows, mut lost) = (Vec::new(), 0);
     for (id, (line, count, points)) in (1..).zip(splines) {
         if points.len() != *count {
             let found = points.len();
             let problem = format!("the spline has {found} of its {count} control points; is the file cut off?");
-            return Err(FilePlace::line(*line).wrong(origin, problem));
+            return Err(FilePlace::line(*line).wrong(problem));
         }
         let apart = |pair: &&[ControlPoint; 2]| pair[1].frame - pair[0].frame > LONGEST;
         lost += points.array_windows().filter(apart).count() + usize::from(points.len() < 2);
-        rows.extend(along(id, points, origin)?);
+        rows.extend(along(id, points)?);
         if rows.len() > MOST_ROWS {
             let problem = format!("the splines have more than {MOST_ROWS} positions; are the frames right?");
-            return Err(FilePlace::line(*line).wrong(origin, problem));
+            return Err(FilePlace::line(*line).wrong(problem));
         }
     }
     Ok((rows, lost))
 }
 
 /// The positions of a spline at the frames that are multiples of [`STEP`].
-fn along(id: i64, points: &[ControlPoint], origin: &str) -> Result<Vec<TrackRow>, FormatError> {
+fn along(id: i64, points: &[ControlPoint]) -> Result<Vec<TrackRow>, Misread> {
     let mut rows: Vec<TrackRow> = Vec::new();
     for [before, after] in points.array_windows() {
         let apart = after.frame - before.frame;
         let place = FilePlace::line(after.line);
         if apart < 0 {
-            return Err(place.wrong(origin, "the frames of a spline must increase"));
+            return Err(place.wrong("the frames of a spline must increase"));
         }
         if apart > LONGEST {
             continue;

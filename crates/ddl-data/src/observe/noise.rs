@@ -50,7 +50,6 @@ pub(super) struct TrackNoise {
     rows: usize,
 }
 
-/// One of the levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct NoiseLevel(usize);
 

@@ -5,8 +5,6 @@ use ddl_data::{
 };
 use proptest::prelude::*;
 
-use crate::readers::complaint;
-
 /// By hand: 12 frames a second are 4.8 in a step, 4 are 1.6, 1 is 0.4.
 #[test]
 fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
@@ -139,43 +137,9 @@ fn scenes_of_trajnet_state_the_frame_rate() {
 }
 
 #[test]
-fn scenes_that_disagree_about_the_rate_are_named() {
-    let scenes = "{\"scene\": {\"id\": 0, \"fps\": 2.5}}\n\n{\"scene\": {\"id\": 1, \"fps\": 25}}\n";
-    let message = complaint(trajnet_at_2_fps(scenes), Format::TrajNet);
-    assert!(
-        message.starts_with("f, line 3: scene.fps is 25, but 2.5 on line 1; a file holds one recording"),
-        "{message}"
-    );
-    for fps in ["0", "-2.5", "\"fast\"", "[2.5]"] {
-        let scenes = format!("{{\"scene\": {{\"id\": 0, \"fps\": {fps}}}}}\n");
-        let message = complaint(trajnet_at_2_fps(&scenes), Format::TrajNet);
-        let expected = format!("f, line 1: scene.fps must be a number above 0, the frames in a second, found {fps}");
-        assert_eq!(message, expected);
-    }
-}
-
-/// The header (empty for TrajNet++), a time, the microseconds that it is, and how it prints.
-const TIMES: &str = r#"
-time,pedestrian,x,y => 1351039227.1 => 1351039227100000 => 1351039227.1
-Seconds,pedestrian,x,y => -3 => -3000000 => -3
-frame,pedestrian,x,y => 1351039227.000001 => 1351039227000001 => 1351039227.000001
-time_ms,pedestrian,x,y => 1700000000100 => 1700000000100000 => 1700000000100
-time_ms,pedestrian,x,y => 33.5 => 33500 => 33.5
-timestamp_us,pedestrian,x,y => 1700000000100001 => 1700000000100001 => 1700000000100001
-time_ns,pedestrian,x,y => 1700000000123456789 => 1700000000123456 => 1700000000123456000
-time_ns,pedestrian,x,y => -1 => -1 => -1000
-time,pedestrian,x,y => 2026-05-31T12:00:00.4Z => 1780228800400000 => 2026-05-31T12:00:00.4Z
-timestamp,pedestrian,x,y => 2026-05-31 14:00:00.4+02:00 => 1780228800400000 => 2026-05-31T12:00:00.4Z
-t,pedestrian,x,y => 2026-05-31T12:00:00 => 1780228800000000 => 2026-05-31T12:00:00Z
-=> 0.25 7 0 0 => 250000 => 0.25
-=> {"track":{"t":1351039227.1,"p":7,"x":0,"y":0}} => 1351039227100000 => 1351039227.1
-=> {"track":{"t":12,"p":7,"x":0,"y":0}} => 12000000 => 12
-=> {"track":{"t":"2026-05-31T12:00:00.4+00:00","p":7,"x":0,"y":0}} => 1780228800400000 => 2026-05-31T12:00:00.4Z
-"#;
-
-#[test]
 fn times_are_exact_to_a_microsecond_and_print_back() {
-    for case in TIMES.trim().lines() {
+    let (_, times) = include_str!("times.txt").split_once("\n\n").unwrap();
+    for case in times.lines() {
         let [header, time, expected, printed] = case.split("=> ").map(str::trim).collect::<Vec<_>>()[..] else {
             panic!("{case}");
         };
@@ -208,44 +172,6 @@ fn times_are_exact_to_a_microsecond_and_print_back() {
         (seconds.frames(), seconds.time_unit()),
         (&[12_000_000, 12_400_000][..], Some(TimeUnit::Seconds))
     );
-}
-
-/// Files, `|` between lines, what reading the whole file says, and what reading a stream says.
-const MIXED_TIMES: &str = r#"
-time,pedestrian,x,y|12.5,7,0,0|2026-05-31T12:00:00Z,7,0,0 => line 3, field 1: time must be a time, found "2026 => SAME
-time,pedestrian,x,y|2026-05-31T12:00:00Z,7,0,0|12.5,7,0,0 => line 3, field 1: time must be a date with a time => SAME
-time_ms,pedestrian,x,y|2026-05-31T12:00:00Z,7,0,0 => line 2, field 1: time must be a time, found "2026-05 => SAME
-time_s,pedestrian,x,y|1700000000100,7,0,0 => line 2, field 1: time 1700000000100 is after the year 2250 => SAME
-time,pedestrian,x,y|noon,7,0,0 => line 2, field 1: time must be a time, found "noon" => SAME
-frame,pedestrian,x,y|0,7,0,0|0.4,7,0,0 => NONE => line 3, field 1: frame must be a whole number below 2^53 in size
-0.4 7 0 0|0.8 7 0 0 => NONE => NONE
-0 7 0 0|0.4 7 0 0 => NONE => line 2, field 1: frame must be a whole number
-{"track":{"f":0,TRACK}}|{"track":{"t":0.4,TRACK}} => line 2: the time is of another kind than that of the first => SAME
-{"track":{"t":0,TRACK}}|{"track":{"t":"2026-05-31T12:00:00Z",TRACK}} => line 2: the time is of another kind => SAME
-{"track":{"f":0,"t":0.4,TRACK}} => line 1: track.f and track.t: give a frame or a time => SAME
-{"track":{"t":"noon",TRACK}} => line 1: time must be a date with a time such as 2026-05-31T12:00:00.4Z => SAME
-"#;
-
-#[test]
-fn times_of_two_kinds_are_refused_with_their_place() {
-    for case in MIXED_TIMES.trim().lines() {
-        let [text, of_file, of_stream] = case.split(" => ").collect::<Vec<_>>()[..] else {
-            panic!("{case}");
-        };
-        let text = text.replace('|', "\n").replace("TRACK", r#""p":7,"x":0,"y":0"#) + "\n";
-        let format = Format::guess("".as_ref(), text.as_bytes()).unwrap();
-        let file = parse_recording(text.as_bytes(), "f", format)
-            .err()
-            .map_or("NONE".to_owned(), |e| e.to_string());
-        let mut frames = FrameReader::new(text.as_bytes(), "f");
-        let stream = std::iter::from_fn(|| frames.next_frame().transpose()).find_map(Result::err);
-        let stream = stream.map_or("NONE".to_owned(), |error| error.to_string());
-        assert!(file.contains(of_file), "{case}: {file}");
-        assert!(
-            stream.contains(if of_stream == "SAME" { of_file } else { of_stream }),
-            "{case}: {stream}"
-        );
-    }
 }
 
 /// A mistake decides nothing about the lines after it.

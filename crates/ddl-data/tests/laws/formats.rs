@@ -101,46 +101,7 @@ proptest! {
     }
 }
 
-/// A file with its text; then its format, the first observation (frame, pedestrian, x, y), the number of observations,
-/// and what is told.
-const SAMPLES: &str = r#"
-sdd.txt: 7 100 200 130 230 0 0 0 1 "Pedestrian"\n7 102 200 132 230 1 1 0 1 "Pedestrian"\n8 0 0 2 4 0 0 0 0 "Biker"
-=> sdd 0 7 115 215 1 Stanford Drone|1 marked lost|1 of class Biker
-mot.txt: 1,3,300,200,40,110,0.9,-1,-1,-1\n2,3,304,201,40,110,0.9,-1,-1,-1
-=> mot 1 3 320 310 2 the positions are in pixels
-gt.txt: 1,3,300,200,40,110,1,1,0.8\n1,4,0,0,40,110,1,3,1
-=> mot-truth 1 3 320 310 1 1 of class 3
-atc.csv: 1351039227.1,21,1500,-2500,1700,900,0.1,0.2\n1351039227.2,21,1590,-2500,1700,900,0.1,0.2
-=> atc 1351039227100000 21 1.5 -2.5 2 millimetres
-kitti.txt: 0 2 Pedestrian 0 0 -1.5 1 2 3 4 2 1 1 3.5 1.6 12.25 0.1\n0 3 Car 0 0 -1 1 2 3 4 2 1 1 3 2 12 0
-=> kitti 0 2 3.5 12.25 1 1 of class Car
-apollo.txt: 0 5 3 10.5 -2.5 0.1 0.5 0.5 1.7 0.3\n0 6 1 11 -2 0.1 4 2 1.5 0.3
-=> apolloscape 0 5 10.5 -2.5 1 1 of class 1
-petrack.txt: 1 0 100.0 300.0 170.0\n1 1 108.0 300.0 170.0
-=> petrack-cm 0 1 1 3 2 in centimetres (PeTrack)
-petrack.txt: # framerate: 25 fps\n# id frame x/m y/m z/m\n1 0 1.0 3.0 1.7\n1 1 1.08 3.0 1.7
-=> table 0 1 1 3 2 z/m is taken for the height
-jupedsim.txt: # description: jpsvis\n#framerate: 16.00\n#ID\tFR\tX\tY\tZ\n1\t0\t1.0\t3.0\t0\n1\t1\t1.08\t3.0\t0
-=> table 0 1 1 3 2 Z is taken for the height
-trajnet.txt: 800 2.0 13.6 5.8\n810 2.0 13.1 5.82\n820 2.0 ? ?
-=> social-gan 800 2 13.6 5.8 2 1 with ? for a position to forecast
-ind.csv: recordingId,trackId,frame,trackLifetime,xCenter,yCenter,heading,width,length\n7,0,10,0,5.25,-1.5,0,0,0
-=> table 10 0 5.25 -1.5 1 vehicles are read too
-sind.csv: track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy\n4,7,700.0,pedestrian,2.5,3.5,0,0
-=> table 700000 4 2.5 3.5 1 the times are those of the column timestamp_ms
-dut.csv: id,frame,label,x_est,y_est,vx_est,vy_est\n1,4,ped,20.5,3.25,0,0\n2,4,veh,0,0,0,0
-=> table 4 1 20.5 3.25 1 1 of class veh
-tracker.csv: frame,track_id,x1,y1,x2,y2,score\n3,9,10,20,30,80,0.5
-=> table 3 9 20 80 1 the positions are in pixels
-numpy.txt: # frame pedestrian x_cm y_cm\n0 1 250 350
-=> table 0 1 2.5 3.5 1 the positions are in centimetres
-rostopic.csv: %time,field.id,field.pose.position.x,field.pose.position.y\n1351039227100000000,3,1.5,2.5
-=> table 1351039227100000 3 1.5 2.5 1 19 digits
-times.csv: timestamp,id,x,y\n1700000000100,7,0.5,1\n1700000000500,7,1,1
-=> table 1700000000100000 7 0.5 1 2 13 digits: they are read as milliseconds
-"#;
-
-/// Files that are not in order of time, and are refused as streams.
+/// Files that are not in order of time.
 #[test]
 fn splines_and_lists_of_tracks_are_read() {
     let edinburgh =
@@ -179,33 +140,12 @@ fn splines_and_lists_of_tracks_are_read() {
     );
     assert_eq!(recording.stated_frame_time(), Some(1.0 / 25.0));
     assert!(recording.notes()[0].contains("a forecast knows where the next one lies"));
-    for (name, text, problem) in [
-        (
-            "a.vsp",
-            &vsp.replace("3 - Num", "4 - Num")[..],
-            "3 of its 4 control points",
-        ),
-        ("a.vsp", &vsp.replace("1 - the", "2 - the"), "1 of its 2 splines"),
-        ("a.vsp", &vsp.replace("45 0", "15 0"), "must increase"),
-        ("a.vsp", &vsp.replace("45 0", "45"), "expected a control point"),
-        ("a.txt", &edinburgh.replace("20 7", "20"), "expected x, y and frame"),
-        ("a.txt", &edinburgh.replace("7 ]];", "7"), "is the file cut off?"),
-        ("a.txt", &edinburgh.replace("TRACK.R2", "TRACE"), "expected a track"),
-        ("000001.txt", "120 300 5\n121 301 6\n", "Grand Central"),
-        ("a.parquet", "PAR1\u{15}", "read_parquet"),
-    ] {
-        let found = read(name, text).unwrap_err();
-        assert!(found.contains(problem), "{found}");
-    }
-    for text in [edinburgh, vsp] {
-        let error = FrameReader::new(text.as_bytes(), "t").next_frame().unwrap_err();
-        assert!(error.to_string().contains("give the file"), "{error}");
-    }
 }
 
 #[test]
 fn formats_of_others_are_read_and_what_was_assumed_is_told() {
-    let lines: Vec<&str> = SAMPLES.trim().lines().collect();
+    let (_, samples) = include_str!("samples.txt").split_once("\n\n").unwrap();
+    let lines: Vec<&str> = samples.lines().collect();
     for [file, expected] in lines.as_chunks().0 {
         let (name, text) = file.split_once(": ").unwrap();
         let text = text.replace("\\n", "\n").replace("\\t", "\t") + "\n";
@@ -237,23 +177,20 @@ fn formats_of_others_are_read_and_what_was_assumed_is_told() {
     assert_eq!(rate.stated_frame_time(), Some(1.0 / 25.0));
 }
 
-/// Files with their texts, and a part of the message.
-const MISREAD: &str = r"
-yolo.txt: 9 0 .48 .41 .51 .46 .50 .44\n8 0 .59 .48 .62 .53 .60 .50 => the fourth, the height, changes
-two.txt: 0 1 0 0\n0 2 0.5 0\n1 1 0.5 0\n1 2 1 0 => may be frame and pedestrian, or pedestrian and frame
-pandas.csv: ,a,b,c,d\n0,0,1,2,3 => still missing: frame, pedestrian, x, y
-wide.csv: frame,x1,y1,x2,y2,x3,y3\n0,1,2,3,4,5,6 => each pedestrian has columns of its own
-";
-
-/// Detections that look like the table of ETH, and others.
 #[test]
-fn what_is_read_wrongly_elsewhere_is_refused() {
-    for case in MISREAD.trim().lines() {
-        let (file, problem) = case.split_once(" => ").unwrap();
-        let (name, text) = file.split_once(": ").unwrap();
-        let found = read(name, &(text.replace("\\n", "\n") + "\n")).unwrap_err();
-        assert!(found.contains(problem), "{found}");
+fn every_format_is_recognised() {
+    for case in include_str!("recognised.txt").lines().skip(2) {
+        let (file, format) = case.split_once(" => ").unwrap();
+        let (name, text) = file.split_once("::").unwrap();
+        let text = text.replace("\\n", "\n").replace("\\t", "\t");
+        let guessed = Format::guess(name.as_ref(), text.as_bytes()).unwrap();
+        assert_eq!(guessed.name(), format, "{case}");
     }
+}
+
+/// A header of many empty names has a short message.
+#[test]
+fn messages_are_short() {
     let commas = ",".repeat(200_000) + "\n";
     let message = read("commas.csv", &commas).unwrap_err();
     assert!(message.len() < 400, "{message}");

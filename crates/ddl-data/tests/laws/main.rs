@@ -8,6 +8,7 @@ mod formats;
 mod frames;
 mod homography;
 mod live;
+mod mistakes;
 mod names;
 mod observe;
 mod readers;

@@ -9,7 +9,6 @@ use crate::document::table::Table;
 pub(crate) struct Document {
     /// The first line, such as the data convention of the numbers.
     pub(crate) lead: String,
-    /// The title.
     pub(crate) title: String,
     /// The content below the title.
     pub(crate) parts: Vec<Part>,
@@ -22,16 +21,12 @@ pub(crate) enum Part {
     Heading {
         /// Level, from 1.
         level: usize,
-        /// The text.
         text: String,
     },
     /// Running text.
     Paragraph(String),
-    /// Items of a list.
     List(Vec<String>),
-    /// A warning.
     Warning(String),
-    /// A table.
     Table(Table),
     /// Further parts, collapsed in HTML.
     Details {

@@ -90,7 +90,7 @@ impl Results {
         Ok(results)
     }
 
-    /// Writes `report.md`, `report.tex`, `report.json`, `moments.json`, the page `report.html` and each of its figures
+    /// Writes `report.md`, `report.json`, `moments.json`, the page `report.html` and each of its figures
     /// as `figures/NAME.svg` into `folder`, which is created if missing. Existing files are replaced; other `.svg`
     /// files in `figures` are removed.
     ///

@@ -13,7 +13,6 @@ use std::time::Duration;
 /// Time between two checks for a request to stop and for the end of a process.
 pub(super) const BEAT: Duration = Duration::from_millis(20);
 
-/// The path of this program.
 pub(super) fn this_program() -> anyhow::Result<PathBuf> {
     std::env::current_exe().context("cannot find the path of this program")
 }

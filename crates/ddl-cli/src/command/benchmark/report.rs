@@ -43,7 +43,6 @@ pub(super) fn write(plan: &Plan, runs: &[PathBuf], out: &Path, reporting: &Repor
     let others = [
         ("report", "report.md"),
         ("", "report.json"),
-        ("for a paper", "report.tex"),
         ("page", "report.html"),
         ("figures", "figures"),
     ];

@@ -33,7 +33,7 @@ pub(crate) struct OtherProgram {
     /// Score only the pedestrians that are both in the windows and in the file, and note this in the results
     #[arg(long, requires = "forecasts")]
     intersection: bool,
-    /// Folder for the report: report.html, report.md, report.tex, report.json, moments.json and figures
+    /// Folder for the report: report.html, report.md, report.json, moments.json and figures
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
 }

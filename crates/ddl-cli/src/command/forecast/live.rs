@@ -245,7 +245,6 @@ impl Stream<'_> {
         watching.scenes.as_ref().map_or(0, LiveScenes::waiting)
     }
 
-    /// Adds a frame.
     fn take(&mut self, frame: Frame, stated: &StatedTime, units: &Units) -> anyhow::Result<()> {
         for note in &stated.notes {
             tell(format_args!("note: {note}"));

@@ -102,7 +102,6 @@ pub(crate) struct StreamState {
     pub(crate) unfamiliar: UnfamiliarMotions,
     is_violation_told: bool,
     told: BTreeSet<&'static str>,
-    /// The adaptive regions of each scene.
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }
 

@@ -31,7 +31,7 @@ fn every_format_says_the_same() {
         (ndjson(), ExternalFormat::TrajNet),
     ] {
         let matched = read(&text, format, Coverage::Whole).unwrap();
-        assert_eq!(matched.forecasts, expected(), "{format}");
+        assert_eq!(matched.forecasts, expected(), "{format:?}");
         assert_eq!(matched.windows, windows());
         assert_eq!(matched.pedestrians(), 3);
         assert_eq!(matched.test_subset(), None);
@@ -108,7 +108,7 @@ fn pedestrians_may_have_words_for_names() {
         let matched = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole);
         let both = [still(1.0, 0.0), still(1.0, 0.0)].concat();
         let both = Forecast::with_equal_weights(2, 1, both).unwrap();
-        assert_eq!(matched.unwrap().forecasts, [both], "{format}");
+        assert_eq!(matched.unwrap().forecasts, [both], "{format:?}");
     }
     let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");
     let message = of(&windows, &one, Coverage::Whole).unwrap_err().to_string();

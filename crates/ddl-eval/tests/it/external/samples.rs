@@ -9,6 +9,7 @@ use ddl_eval::external::{Coverage, read_samples, write_samples};
 use proptest::prelude::*;
 
 use super::files::{expected, windows};
+use super::mistakes::cases_of;
 use crate::generated;
 
 const ALL: Coverage = Coverage::Whole;
@@ -86,15 +87,7 @@ fn complaint(change: impl FnOnce(&Path)) -> String {
 
 #[test]
 fn every_mistake_is_named_with_its_file_and_line() {
-    let cases = r#"
-80 3 1 0 => 80 3 1 => line 1: 3 numbers; a row is `frame pedestrian x y`
-90 3 1 0 => 90 3 nan 0 => line 2, x: must be a finite number, found "nan"
-90 3 1 0 => 90 3.5 1 0 => line 2, pedestrian: must be a whole number
-90 3 1 0 => => line 1: 11 positions; a forecast has 12
-90 3 1 0 => 91 3 1 0 => line 1, frames: the forecast has the frames 80, 91 to 190
-90 5 2 0 => 90 3 2 0 => line 14: the rows of pedestrian 3 must stand together
-"#;
-    for case in cases.trim().lines() {
+    for case in cases_of("lines of a sample") {
         let parts: Vec<&str> = case.split("=>").map(str::trim).collect();
         let error = complaint(|folder| {
             let text = fs::read_to_string(folder.join(SAMPLE)).unwrap();
