@@ -3,7 +3,7 @@
 use crate::arrays::array;
 use crate::errors::of_any;
 use crate::interruptible::run;
-use ddl::softdtw::{Cost, Neighbour, SearchError, SearchIndex as Index, SoftDtw};
+use ddl::softdtw::{Neighbour, SearchError, SearchIndex as Index, SoftDtw};
 use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -83,19 +83,6 @@ fn steps<'a, const D: usize>(
     Ok(Cow::Owned(widened.collect()))
 }
 
-fn distance(gamma: f64, cost: &str) -> PyResult<SoftDtw> {
-    let cost = match cost {
-        "squared_euclidean" => Cost::SquaredEuclidean,
-        "euclidean" => Cost::Euclidean,
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "cost must be 'squared_euclidean' or 'euclidean', found {cost:?}"
-            )));
-        }
-    };
-    SoftDtw::new(gamma, cost).map_err(of_any)
-}
-
 /// Limit of the cells of a gradient; at 24 bytes each, 12 GB.
 const MOST_CELLS: usize = 500_000_000;
 /// Number of cells above which the GIL is released.
@@ -113,9 +100,7 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 /// x, y
 ///     (n, components) and (m, components), or (n,) and (m,).
 /// gamma
-///     Smoothing, in the unit of the cost; 0 is hard DTW.
-/// cost
-///     "squared_euclidean" or "euclidean" distance of two steps.
+///     Smoothing, in the unit of the squared distance of two steps; 0 is hard DTW.
 /// normalised
 ///     D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 ///
@@ -124,16 +109,15 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 /// ValueError
 ///     A sequence is empty or not finite, or the components differ.
 #[pyfunction]
-#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", normalised = false))]
+#[pyo3(signature = (x, y, gamma = 1.0, *, normalised = false))]
 pub(crate) fn value(
     py: Python<'_>,
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
     gamma: f64,
-    cost: &str,
     normalised: bool,
 ) -> PyResult<f64> {
-    let dtw = distance(gamma, cost)?;
+    let dtw = SoftDtw::new(gamma).map_err(of_any)?;
     let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
     let components = x.shape()[1];
     in_dimension!(components, D => {
@@ -149,16 +133,15 @@ pub(crate) fn value(
 
 /// Soft-DTW, and its gradient (n, components) with respect to `x`; see `value`.
 #[pyfunction]
-#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", normalised = false))]
+#[pyo3(signature = (x, y, gamma = 1.0, *, normalised = false))]
 pub(crate) fn value_and_gradient(
     py: Python<'_>,
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
     gamma: f64,
-    cost: &str,
     normalised: bool,
 ) -> PyResult<(f64, Py<PyAny>)> {
-    let dtw = distance(gamma, cost)?;
+    let dtw = SoftDtw::new(gamma).map_err(of_any)?;
     let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
     let components = x.shape()[1];
     in_dimension!(components, D => {
@@ -246,9 +229,9 @@ pub(crate) struct SearchIndex {
 #[pymethods]
 impl SearchIndex {
     #[new]
-    #[pyo3(signature = (candidates, gamma = 1.0, *, cost = "squared_euclidean"))]
-    fn new(py: Python<'_>, candidates: Vec<Bound<'_, PyAny>>, gamma: f64, cost: &str) -> PyResult<Self> {
-        let dtw = distance(gamma, cost)?;
+    #[pyo3(signature = (candidates, gamma = 1.0))]
+    fn new(py: Python<'_>, candidates: Vec<Bound<'_, PyAny>>, gamma: f64) -> PyResult<Self> {
+        let dtw = SoftDtw::new(gamma).map_err(of_any)?;
         let arrays = sequences(&candidates, "candidates")?;
         let components = components_of(&arrays, "candidates")?;
         let index: Box<dyn IndexOfAnyDimension> = in_dimension!(components, D => {
