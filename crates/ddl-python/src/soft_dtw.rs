@@ -177,24 +177,8 @@ pub(crate) fn value_and_gradient(
 /// A search, ready to run without the GIL.
 type Work = Box<dyn FnOnce() -> Result<Vec<Vec<Neighbour>>, SearchError> + Send>;
 
-/// A search index with a number of components that is known at run time.
-trait IndexOfAnyDimension: Send + Sync {
-    /// The search for the `n` nearest of each query.
-    fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work>;
-    fn len(&self) -> usize;
-}
-
-impl<const D: usize> IndexOfAnyDimension for Arc<Index<D>> {
-    fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work> {
-        let queries = all_steps::<D>(queries, components, "queries")?;
-        let index = Arc::clone(self);
-        Ok(Box::new(move || index.nearest_batch(&queries, n)))
-    }
-
-    fn len(&self) -> usize {
-        Index::len(self)
-    }
-}
+/// The search for the `n` nearest of each query, for a number of components that is known at run time.
+type Prepare = Box<dyn Fn(&[PyReadonlyArray2<'_, f64>], usize) -> PyResult<Work> + Send + Sync>;
 
 fn all_steps<const D: usize>(
     arrays: &[PyReadonlyArray2<'_, f64>],
@@ -222,8 +206,8 @@ fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<u
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
 pub(crate) struct SearchIndex {
-    index: Box<dyn IndexOfAnyDimension>,
-    components: usize,
+    prepare: Prepare,
+    candidates: usize,
 }
 
 #[pymethods]
@@ -234,25 +218,33 @@ impl SearchIndex {
         let dtw = SoftDtw::new(gamma).map_err(of_any)?;
         let arrays = sequences(&candidates, "candidates")?;
         let components = components_of(&arrays, "candidates")?;
-        let index: Box<dyn IndexOfAnyDimension> = in_dimension!(components, D => {
+        let prepare: Prepare = in_dimension!(components, D => {
             let candidates = all_steps::<D>(&arrays, components, "candidates")?;
             let built = run(py, move |_| Index::build(&dtw, &candidates))?;
-            let built: Box<dyn IndexOfAnyDimension> = Box::new(Arc::new(built.map_err(of_any)?));
-            Ok(built)
+            let index = Arc::new(built.map_err(of_any)?);
+            let prepare: Prepare = Box::new(move |queries, n| {
+                let queries = all_steps::<D>(queries, components, "queries")?;
+                let index = Arc::clone(&index);
+                Ok(Box::new(move || index.nearest_batch(&queries, n)))
+            });
+            Ok(prepare)
         })?;
-        Ok(Self { index, components })
+        Ok(Self {
+            prepare,
+            candidates: arrays.len(),
+        })
     }
 
     fn __len__(&self) -> usize {
-        self.index.len()
+        self.candidates
     }
 
     /// Indices `(q, n)` and distances `(q, n)`, nearest first.
     fn nearest(&self, py: Python<'_>, queries: Vec<Bound<'_, PyAny>>, n: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
         let queries = sequences(&queries, "queries")?;
-        let search = self.index.prepared(&queries, self.components, n)?;
+        let search = (self.prepare)(&queries, n)?;
         let neighbours = run(py, move |_| search())?.map_err(of_any)?;
-        let shape = [neighbours.len(), n.min(self.index.len())];
+        let shape = [neighbours.len(), n.min(self.candidates)];
         let flat = || neighbours.iter().flatten();
         let indices = flat().map(|neighbour| neighbour.index as i64).collect();
         let distances = flat().map(|neighbour| neighbour.distance).collect();
