@@ -1,6 +1,6 @@
 //! The goal estimator: it retrieves similar pedestrians and places goals among their endpoints.
 
-use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
+use ddl_softdtw::{Neighbour, SearchIndex, SoftDtw};
 use rayon::prelude::*;
 
 use crate::analogues::Analogues;
@@ -155,7 +155,7 @@ struct Retriever {
 
 impl Retriever {
     fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
-        let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean)?;
+        let dtw = SoftDtw::new(gamma)?;
         let time_step = library.time_step;
         let sequences = library.of_each(|track| velocities(track, time_step, span))?;
         Ok(Self {

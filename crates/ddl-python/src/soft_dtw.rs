@@ -3,7 +3,7 @@
 use crate::arrays::array;
 use crate::errors::of_any;
 use crate::interruptible::run;
-use ddl::softdtw::{Cost, Neighbour, SearchError, SearchIndex as Index, SoftDtw};
+use ddl::softdtw::{Neighbour, SearchError, SearchIndex as Index, SoftDtw};
 use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -83,19 +83,6 @@ fn steps<'a, const D: usize>(
     Ok(Cow::Owned(widened.collect()))
 }
 
-fn distance(gamma: f64, cost: &str) -> PyResult<SoftDtw> {
-    let cost = match cost {
-        "squared_euclidean" => Cost::SquaredEuclidean,
-        "euclidean" => Cost::Euclidean,
-        _ => {
-            return Err(PyValueError::new_err(format!(
-                "cost must be 'squared_euclidean' or 'euclidean', found {cost:?}"
-            )));
-        }
-    };
-    SoftDtw::new(gamma, cost).map_err(of_any)
-}
-
 /// Limit of the cells of a gradient; at 24 bytes each, 12 GB.
 const MOST_CELLS: usize = 500_000_000;
 /// Number of cells above which the GIL is released.
@@ -113,9 +100,7 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 /// x, y
 ///     (n, components) and (m, components), or (n,) and (m,).
 /// gamma
-///     Smoothing, in the unit of the cost; 0 is hard DTW.
-/// cost
-///     "squared_euclidean" or "euclidean" distance of two steps.
+///     Smoothing, in the unit of the squared distance of two steps; 0 is hard DTW.
 /// normalised
 ///     D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 ///
@@ -124,16 +109,15 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 /// ValueError
 ///     A sequence is empty or not finite, or the components differ.
 #[pyfunction]
-#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", normalised = false))]
+#[pyo3(signature = (x, y, gamma = 1.0, *, normalised = false))]
 pub(crate) fn value(
     py: Python<'_>,
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
     gamma: f64,
-    cost: &str,
     normalised: bool,
 ) -> PyResult<f64> {
-    let dtw = distance(gamma, cost)?;
+    let dtw = SoftDtw::new(gamma).map_err(of_any)?;
     let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
     let components = x.shape()[1];
     in_dimension!(components, D => {
@@ -149,16 +133,15 @@ pub(crate) fn value(
 
 /// Soft-DTW, and its gradient (n, components) with respect to `x`; see `value`.
 #[pyfunction]
-#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", normalised = false))]
+#[pyo3(signature = (x, y, gamma = 1.0, *, normalised = false))]
 pub(crate) fn value_and_gradient(
     py: Python<'_>,
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
     gamma: f64,
-    cost: &str,
     normalised: bool,
 ) -> PyResult<(f64, Py<PyAny>)> {
-    let dtw = distance(gamma, cost)?;
+    let dtw = SoftDtw::new(gamma).map_err(of_any)?;
     let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
     let components = x.shape()[1];
     in_dimension!(components, D => {
@@ -194,24 +177,8 @@ pub(crate) fn value_and_gradient(
 /// A search, ready to run without the GIL.
 type Work = Box<dyn FnOnce() -> Result<Vec<Vec<Neighbour>>, SearchError> + Send>;
 
-/// A search index with a number of components that is known at run time.
-trait IndexOfAnyDimension: Send + Sync {
-    /// The search for the `n` nearest of each query.
-    fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work>;
-    fn len(&self) -> usize;
-}
-
-impl<const D: usize> IndexOfAnyDimension for Arc<Index<D>> {
-    fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work> {
-        let queries = all_steps::<D>(queries, components, "queries")?;
-        let index = Arc::clone(self);
-        Ok(Box::new(move || index.nearest_batch(&queries, n)))
-    }
-
-    fn len(&self) -> usize {
-        Index::len(self)
-    }
-}
+/// The search for the `n` nearest of each query, for a number of components that is known at run time.
+type Prepare = Box<dyn Fn(&[PyReadonlyArray2<'_, f64>], usize) -> PyResult<Work> + Send + Sync>;
 
 fn all_steps<const D: usize>(
     arrays: &[PyReadonlyArray2<'_, f64>],
@@ -239,37 +206,45 @@ fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<u
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
 pub(crate) struct SearchIndex {
-    index: Box<dyn IndexOfAnyDimension>,
-    components: usize,
+    prepare: Prepare,
+    candidates: usize,
 }
 
 #[pymethods]
 impl SearchIndex {
     #[new]
-    #[pyo3(signature = (candidates, gamma = 1.0, *, cost = "squared_euclidean"))]
-    fn new(py: Python<'_>, candidates: Vec<Bound<'_, PyAny>>, gamma: f64, cost: &str) -> PyResult<Self> {
-        let dtw = distance(gamma, cost)?;
+    #[pyo3(signature = (candidates, gamma = 1.0))]
+    fn new(py: Python<'_>, candidates: Vec<Bound<'_, PyAny>>, gamma: f64) -> PyResult<Self> {
+        let dtw = SoftDtw::new(gamma).map_err(of_any)?;
         let arrays = sequences(&candidates, "candidates")?;
         let components = components_of(&arrays, "candidates")?;
-        let index: Box<dyn IndexOfAnyDimension> = in_dimension!(components, D => {
+        let prepare: Prepare = in_dimension!(components, D => {
             let candidates = all_steps::<D>(&arrays, components, "candidates")?;
             let built = run(py, move |_| Index::build(&dtw, &candidates))?;
-            let built: Box<dyn IndexOfAnyDimension> = Box::new(Arc::new(built.map_err(of_any)?));
-            Ok(built)
+            let index = Arc::new(built.map_err(of_any)?);
+            let prepare: Prepare = Box::new(move |queries, n| {
+                let queries = all_steps::<D>(queries, components, "queries")?;
+                let index = Arc::clone(&index);
+                Ok(Box::new(move || index.nearest_batch(&queries, n)))
+            });
+            Ok(prepare)
         })?;
-        Ok(Self { index, components })
+        Ok(Self {
+            prepare,
+            candidates: arrays.len(),
+        })
     }
 
     fn __len__(&self) -> usize {
-        self.index.len()
+        self.candidates
     }
 
     /// Indices `(q, n)` and distances `(q, n)`, nearest first.
     fn nearest(&self, py: Python<'_>, queries: Vec<Bound<'_, PyAny>>, n: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
         let queries = sequences(&queries, "queries")?;
-        let search = self.index.prepared(&queries, self.components, n)?;
+        let search = (self.prepare)(&queries, n)?;
         let neighbours = run(py, move |_| search())?.map_err(of_any)?;
-        let shape = [neighbours.len(), n.min(self.index.len())];
+        let shape = [neighbours.len(), n.min(self.candidates)];
         let flat = || neighbours.iter().flatten();
         let indices = flat().map(|neighbour| neighbour.index as i64).collect();
         let distances = flat().map(|neighbour| neighbour.distance).collect();

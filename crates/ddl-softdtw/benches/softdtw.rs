@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ddl_softdtw::SearchIndex;
-use walks::{Numbers, squared};
+use walks::{Numbers, dtw_of};
 
 fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
     let component = |i: usize, d: usize| (phase + 0.1 * i as f64 + d as f64).sin();
@@ -15,7 +15,7 @@ fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
 }
 
 fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]]) {
-    let dtw = squared(1.0);
+    let dtw = dtw_of(1.0);
     let name = format!("pair {}x{}x{D}", x.len(), y.len());
     let mut group = criterion.benchmark_group(name);
     group.bench_function("value", |b| {
@@ -42,7 +42,7 @@ fn search(criterion: &mut Criterion) {
     group.sample_size(20);
     let pairs = (sequences.len() * queries.len()) as u64;
     group.throughput(Throughput::Elements(pairs));
-    let index = SearchIndex::build(&squared(1.0), &sequences).expect("valid");
+    let index = SearchIndex::build(&dtw_of(1.0), &sequences).expect("valid");
     group.bench_function("100 nearest", |b| {
         b.iter(|| {
             for x in &queries {

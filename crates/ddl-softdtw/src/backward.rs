@@ -5,14 +5,9 @@ use ddl_simd::{Dispatch, Kernel, Simd};
 use fearless_simd::f64x8;
 use fearless_simd::prelude::*;
 
-use crate::cost::Cost;
 use crate::forward::{STRETCH, Step};
 use crate::grid::{Grid, Recursion, STRIP, Slanted, Strip};
 use crate::weight::{Plain, Scaled, TOTAL, Weight, above, lane, splat};
-
-/// Steps that are closer than this count as equal in the gradient of the Euclidean cost: the square of their distance
-/// would lose digits.
-const EQUAL: f64 = 1e-150;
 
 impl<const D: usize> Grid<'_, D> {
     /// The value and its gradient with respect to the rows; not finite when they exceed the range of `f64`.
@@ -58,7 +53,7 @@ impl<const D: usize> Grid<'_, D> {
             let strip = self.strip(index);
             let (earlier, strip_steps) = steps.split_at(steps.len() - (strip.end + 1 - strip.start));
             steps = earlier;
-            let of_lanes = self.retreat::<S, W, C>(simd, &strip, strip_steps, &columns, significand, &mut below);
+            let of_lanes = Self::retreat::<S, W, C>(simd, &strip, strip_steps, &columns, significand, &mut below);
             for lane in 0..STRIP {
                 // Lanes above the first row do not belong to a row.
                 if let Some(row) = (index * STRIP + lane).checked_sub(self.spare_lanes()) {
@@ -80,7 +75,6 @@ impl<const D: usize> Grid<'_, D> {
     /// below the strip, entry c + 7 for column c, and then that of its first row.
     #[inline(always)]
     fn retreat<S: Simd, W: Weight<C>, const C: usize>(
-        &self,
         simd: S,
         strip: &Strip<D>,
         steps: &[Step<S, C>],
@@ -102,14 +96,7 @@ impl<const D: usize> Grid<'_, D> {
             // Beyond the first and the last column the expected alignment is 0.
             let expected = W::shares(simd, step.cells, sum, (significand, TOTAL));
             let differences = columns.differences(simd, &strip.x, d);
-            let slope = match self.cost {
-                Cost::SquaredEuclidean => expected * 2.0,
-                Cost::Euclidean => {
-                    let length = self.costs(simd, differences);
-                    let apart = length.simd_gt(EQUAL);
-                    apart.select(expected / length, f64x8::splat(simd, 0.0))
-                }
-            };
+            let slope = expected * 2.0;
             for k in 0..D {
                 gradient[k] += slope * differences[k];
             }

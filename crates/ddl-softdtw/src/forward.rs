@@ -132,7 +132,7 @@ impl<const D: usize> Grid<'_, D> {
             let stop = end.min(next | (STRETCH - 1));
             for d in next..=stop {
                 let differences = columns.differences(simd, &strip.x, d);
-                let factor = W::exp2(simd, self.costs(simd, differences) * minus_scale);
+                let factor = W::exp2(simd, Self::costs(simd, differences) * minus_scale);
                 let up = below(simd, cells, row[d + STRIP - 1]);
                 [_, cells] = W::cells(simd, [diagonal, up, cells], factor);
                 if RECORD {

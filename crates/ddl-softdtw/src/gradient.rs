@@ -19,8 +19,7 @@ impl SoftDtw {
     /// # Numerics
     /// All terms are positive, so nothing cancels. With the bound b on the error of the value ([`SoftDtw`]), E(i, j)
     /// has a relative error of at most 3 b / γ, if that is small. The value is that of [`SoftDtw::value`] to the last
-    /// bit. γ = 0 gives the gradient along one best path (a subgradient). The Euclidean cost contributes 0 if
-    /// `x_i = y_j`, or if they are closer than 1e-150.
+    /// bit. γ = 0 gives the gradient along one best path (a subgradient).
     ///
     /// # References
     /// Cuturi & Blondel (2017), algorithm 2.

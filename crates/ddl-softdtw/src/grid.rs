@@ -5,8 +5,6 @@ use ddl_simd::Simd;
 use fearless_simd::f64x8;
 use fearless_simd::prelude::*;
 
-use crate::cost::Cost;
-
 /// Number of cells computed together: neighbours on an antidiagonal, one per row.
 pub(crate) const STRIP: usize = 8;
 /// One number per row of a strip.
@@ -20,15 +18,12 @@ const PATHS: f64 = 1.271_553_303_2;
 const ROOM: f64 = 873.0;
 /// Exponents are exact integers while the whole parts of all t along a path sum to no more than this.
 const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
-/// Smallest γ and largest cost for which the square of the Euclidean cost is in the range of `f64`.
-const EUCLIDEAN_RANGE: (f64, f64) = (1e-100, 1e140);
 
 /// Two checked sequences and the parameters of their soft-DTW: row i is step i of one, column j step j of the other.
 pub(crate) struct Grid<'a, const D: usize> {
     pub(crate) rows: &'a [[f64; D]],
     pub(crate) columns: &'a [[f64; D]],
     pub(crate) gamma: f64,
-    pub(crate) cost: Cost,
 }
 
 /// How the sums over paths are represented.
@@ -85,7 +80,7 @@ impl<const D: usize> Grid<'_, D> {
 
     /// The costs of the lanes of a strip, with fused products.
     #[inline(always)]
-    pub(crate) fn costs<S: Simd>(&self, simd: S, differences: [f64x8<S>; D]) -> f64x8<S> {
+    pub(crate) fn costs<S: Simd>(simd: S, differences: [f64x8<S>; D]) -> f64x8<S> {
         // Even and odd components are summed separately, which halves the latency of a single chain.
         let mut halves = [f64x8::splat(simd, 0.0); 2];
         for k in 0..D {
@@ -96,11 +91,7 @@ impl<const D: usize> Grid<'_, D> {
                 difference.mul_add_precise(difference, halves[k % 2])
             };
         }
-        let squared = if D > 1 { halves[0] + halves[1] } else { halves[0] };
-        match self.cost {
-            Cost::SquaredEuclidean => squared,
-            Cost::Euclidean => squared.sqrt(),
-        }
+        if D > 1 { halves[0] + halves[1] } else { halves[0] }
     }
 
     /// The factor from a cost to t: log2(e) / γ.
@@ -111,11 +102,9 @@ impl<const D: usize> Grid<'_, D> {
     /// The recursion whose range holds every R of this grid ([`crate::forward`]).
     pub(crate) fn recursion(&self) -> Recursion {
         let (n, m) = (self.rows.len(), self.columns.len());
-        let cost = self.cost_bound();
-        let bound = cost * self.scale();
+        let bound = self.cost_bound() * self.scale();
         let exact = bound * (n + m) as f64 <= EXACT;
-        let squares = self.gamma >= EUCLIDEAN_RANGE.0 && cost <= EUCLIDEAN_RANGE.1;
-        if !exact || self.cost == Cost::Euclidean && !squares {
+        if !exact {
             return Recursion::LogDomain;
         }
         let paths = PATHS * (n + m + 2 * STRIP) as f64;
@@ -135,11 +124,11 @@ impl<const D: usize> Grid<'_, D> {
     fn cost_near_diagonal(&self) -> f64 {
         let (last_row, last_column) = (self.rows.len() - 1, self.columns.len() - 1);
         let cells = last_row.max(last_column).max(1);
-        let cost = |cell| {
+        let cost_of = |cell| {
             let (row, column) = (cell * last_row / cells, cell * last_column / cells);
-            self.cost.between(&self.rows[row], &self.columns[column])
+            cost(&self.rows[row], &self.columns[column])
         };
-        (0..=cells).map(cost).sum()
+        (0..=cells).map(cost_of).sum()
     }
 
     /// A bound of the cost of two steps: that of opposite corners of the box around all steps.
@@ -152,8 +141,13 @@ impl<const D: usize> Grid<'_, D> {
                 high[k] = if step[k] > high[k] { step[k] } else { high[k] };
             }
         }
-        self.cost.between(&low, &high)
+        cost(&low, &high)
     }
+}
+
+/// Cost of matching step `a` with step `b`: |a − b|², infinite when it exceeds the range of `f64`.
+pub(crate) fn cost<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// Steps of a strip whose columns are stored together.

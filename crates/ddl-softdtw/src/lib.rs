@@ -24,9 +24,9 @@
 //! So the results, including the distances, have the same bits for every instruction set, every number of threads and
 //! every batch of queries. A candidate that equals the query is at distance 0.
 //!
-//! Some searches evaluate every candidate in `f64`, which is slower. These are searches with the Euclidean cost,
-//! with sequences of more than 32 steps, or with data so large that the bound is useless. The same holds if the n-th
-//! neighbour is farther than about 57 γ. For γ = 0 all values are computed in the log domain.
+//! Some searches evaluate every candidate in `f64`, which is slower. These are searches with sequences of more than
+//! 32 steps, or with data so large that the bound is useless. The same holds if the n-th neighbour is farther than
+//! about 57 γ. For γ = 0 all values are computed in the log domain.
 //!
 //! The kernels are written once and compiled for three instruction sets (`ddl-simd`): AVX-512, AVX2 with fused
 //! multiplication, and the baseline of the target. The fastest of the machine is taken.
@@ -38,7 +38,6 @@
 
 mod backward;
 mod blocks;
-mod cost;
 mod error;
 mod exp2;
 mod forward;
@@ -56,7 +55,6 @@ mod softmin;
 mod value;
 mod weight;
 
-pub use cost::Cost;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
 pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;

@@ -1,7 +1,7 @@
 //! The textbook recursion in the log domain. It is used for γ = 0 and for extreme ratios of cost to γ, and is the
 //! reference for tests of the fast recursion.
 
-use crate::grid::Grid;
+use crate::grid::{Grid, cost};
 use crate::softmin::{softmin, softmin_weights};
 
 /// Weights of the three ways into a cell: from (i−1, j−1), (i−1, j) and (i, j−1).
@@ -38,7 +38,7 @@ impl<const D: usize> Grid<'_, D> {
             let (mut diagonal, mut left) = (corner, f64::INFINITY);
             for (cell, y) in row.iter_mut().zip(self.columns) {
                 let up = *cell;
-                left = self.cost.between(x, y) + smallest(diagonal, up, left);
+                left = cost(x, y) + smallest(diagonal, up, left);
                 *cell = left;
                 diagonal = up;
             }
@@ -61,9 +61,8 @@ impl<const D: usize> Grid<'_, D> {
                 let [diagonal, up, left] = ways[i * width + j];
                 let expected = below[j + 1] + from_right;
                 if expected > 0.0 {
-                    let slope = self.cost.slope(x, y);
                     for k in 0..D {
-                        slopes[i][k] += expected * slope[k];
+                        slopes[i][k] += expected * (2.0 * (x[k] - y[k]));
                     }
                 }
                 // Column j of the row above receives the diagonal contribution of (i, j + 1) and the upward

@@ -3,7 +3,6 @@
 use ddl_simd::Dispatch;
 use rayon::prelude::*;
 
-use crate::cost::Cost;
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
 use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite, normalise};
@@ -70,7 +69,7 @@ impl<const D: usize> SearchIndex<D> {
             sieve: None,
         };
         index.self_values = index.evaluate_self_values()?;
-        if dtw.gamma > 0.0 && dtw.cost == Cost::SquaredEuclidean {
+        if dtw.gamma > 0.0 {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
             index.sieve = CandidateSieve::build(dtw.gamma, &candidates, &index.self_values);
         }

@@ -1,10 +1,10 @@
 //! The soft-DTW value of two sequences.
 
-use crate::cost::Cost;
 use crate::error::{SequenceRole, SoftDtwError};
 use crate::grid::Grid;
 
-/// Soft-DTW with a fixed smoothing γ and cost, over all warping paths.
+/// Soft-DTW with a fixed smoothing γ, over all warping paths. The cost δ of two steps is their squared distance: m² for
+/// sequences in metres. γ has the unit of the cost.
 ///
 /// ```text
 /// r(i, j) = δ(x_i, y_j) + min_γ( r(i−1, j−1), r(i−1, j), r(i, j−1) ),   r(0, 0) = 0
@@ -31,8 +31,8 @@ use crate::grid::Grid;
 ///
 /// # Examples
 /// ```
-/// use ddl_softdtw::{Cost, SoftDtw};
-/// let dtw = SoftDtw::new(0.0, Cost::SquaredEuclidean)?;
+/// use ddl_softdtw::SoftDtw;
+/// let dtw = SoftDtw::new(0.0)?;
 /// // 0 0 1 and 0 1 1 are one shape at two paces: hard DTW sees no difference.
 /// assert_eq!(dtw.value(&[[0.0], [0.0], [1.0]], &[[0.0], [1.0], [1.0]])?, 0.0);
 /// # Ok::<(), ddl_softdtw::SoftDtwError>(())
@@ -40,7 +40,6 @@ use crate::grid::Grid;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftDtw {
     pub(crate) gamma: f64,
-    pub(crate) cost: Cost,
 }
 
 impl SoftDtw {
@@ -48,9 +47,9 @@ impl SoftDtw {
     ///
     /// # Errors
     /// [`SoftDtwError::InvalidGamma`] when `gamma` is negative, infinite or NaN.
-    pub fn new(gamma: f64, cost: Cost) -> Result<Self, SoftDtwError> {
+    pub fn new(gamma: f64) -> Result<Self, SoftDtwError> {
         if gamma.is_finite() && gamma >= 0.0 {
-            Ok(Self { gamma, cost })
+            Ok(Self { gamma })
         } else {
             Err(SoftDtwError::InvalidGamma { gamma })
         }
@@ -81,7 +80,7 @@ impl SoftDtw {
     }
 
     /// `D_γ(x, x)` of a checked sequence. Exactly 0 for γ = 0.
-    pub(crate) fn self_value<const D: usize>(&self, x: &[[f64; D]]) -> f64 {
+    pub(crate) fn self_value<const D: usize>(self, x: &[[f64; D]]) -> f64 {
         if self.gamma == 0.0 {
             0.0
         } else {
@@ -90,18 +89,17 @@ impl SoftDtw {
     }
 
     /// The value of checked sequences; infinite when it exceeds the range of `f64`.
-    pub(crate) fn value_unchecked<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
+    pub(crate) fn value_unchecked<const D: usize>(self, x: &[[f64; D]], y: &[[f64; D]]) -> f64 {
         // The memory is proportional to the number of columns.
         let (rows, columns) = if x.len() < y.len() { (y, x) } else { (x, y) };
         self.grid(rows, columns).value()
     }
 
-    pub(crate) fn grid<'a, const D: usize>(&self, rows: &'a [[f64; D]], columns: &'a [[f64; D]]) -> Grid<'a, D> {
+    pub(crate) fn grid<'a, const D: usize>(self, rows: &'a [[f64; D]], columns: &'a [[f64; D]]) -> Grid<'a, D> {
         Grid {
             rows,
             columns,
             gamma: self.gamma,
-            cost: self.cost,
         }
     }
 }

@@ -2,13 +2,13 @@
 
 mod walks;
 
-use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
+use ddl_softdtw::{Neighbour, SearchIndex, SoftDtw};
 use proptest::prelude::*;
-use walks::{Numbers, mapped, squared};
+use walks::{Numbers, dtw_of, mapped};
 
 type Walk = walks::Track<2>;
 
-fn brute_force(dtw: &SoftDtw, candidates: &[Walk], query: &Walk) -> Vec<Neighbour> {
+fn brute_force(dtw: SoftDtw, candidates: &[Walk], query: &Walk) -> Vec<Neighbour> {
     let evaluated = |(index, y): (usize, &Walk)| Neighbour {
         index,
         distance: dtw.normalised(query, y).expect("finite"),
@@ -41,14 +41,14 @@ fn assert_same(neighbours: &[Neighbour], oracle: &[Neighbour], n: usize, toleran
     assert!(neighbours.windows(2).all(ordered), "not in order, or one twice");
 }
 
-fn compare((gamma, cost): (f64, Cost), candidates: &[Walk], queries: &[Walk], n: usize) {
-    let dtw = SoftDtw::new(gamma, cost).expect("valid");
+fn compare(gamma: f64, candidates: &[Walk], queries: &[Walk], n: usize) {
+    let dtw = dtw_of(gamma);
     let index = SearchIndex::build(&dtw, candidates).expect("valid");
     // A distance is a small difference of values of the size of gamma.
     let tolerance = 1e-9_f64.max(1e-13 * gamma);
     for query in queries {
         let neighbours = index.nearest(query, n).expect("valid");
-        assert_same(&neighbours, &brute_force(&dtw, candidates, query), n, tolerance);
+        assert_same(&neighbours, &brute_force(dtw, candidates, query), n, tolerance);
     }
 }
 
@@ -58,30 +58,22 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
     let candidates: Vec<Walk> = (0..300).map(|_| numbers.pedestrian(8)).collect();
     let queries: Vec<Walk> = (0..4).map(|_| numbers.pedestrian(8)).collect();
     for gamma in [0.0, 1e-300, 1e-3, 0.01, 0.1, 10.0, 1e6, 1e300] {
-        compare((gamma, Cost::SquaredEuclidean), &candidates, &queries, 20);
-    }
-    for gamma in [0.0, 0.5] {
-        compare((gamma, Cost::Euclidean), &candidates, &queries, 20);
+        compare(gamma, &candidates, &queries, 20);
     }
     // Far queries saturate f32; huge data and data far from the origin do not fit it.
     for (scale, by) in [(1.0, 5.0), (8.0, 0.0)] {
-        compare(
-            (1.0, Cost::SquaredEuclidean),
-            &candidates,
-            &mapped(&queries, scale, by),
-            20,
-        );
+        compare(1.0, &candidates, &mapped(&queries, scale, by), 20);
     }
     for (scale, by) in [(1.0, 1e6), (1e5, 0.0), (1e60, 0.0)] {
         let (candidates, queries) = (mapped(&candidates, scale, by), mapped(&queries, scale, by));
-        compare((1.0, Cost::SquaredEuclidean), &candidates, &queries, 20);
+        compare(1.0, &candidates, &queries, 20);
     }
     // Standing pedestrians, of whom hundreds are nearly equal.
     let standing: Vec<Walk> = (0..1000).map(|_| numbers.standing(8)).collect();
-    compare((1.0, Cost::SquaredEuclidean), &standing, &standing[..4], 100);
+    compare(1.0, &standing, &standing[..4], 100);
     // So long that the number of paths exceeds the range of f32.
     let long: Vec<Walk> = (0..60).map(|i| numbers.pedestrian(30 + i % 5)).collect();
-    compare((1.0, Cost::SquaredEuclidean), &long, &[numbers.pedestrian(31)], 10);
+    compare(1.0, &long, &[numbers.pedestrian(31)], 10);
 }
 
 fn bits(neighbours: &[Neighbour]) -> Vec<(usize, u64)> {
@@ -98,14 +90,8 @@ fn threads_and_company_change_nothing() {
     // One query is too far for the sieve, and one too far for the exponential domain.
     queries.push(vec![[12.0, 0.0]; 8]);
     queries.push(vec![[90.0, 0.0]; 8]);
-    for (gamma, cost) in [
-        (1.0, Cost::SquaredEuclidean),
-        (0.02, Cost::SquaredEuclidean),
-        (0.5, Cost::Euclidean),
-        (0.0, Cost::SquaredEuclidean),
-    ] {
-        let dtw = SoftDtw::new(gamma, cost).unwrap();
-        let index = SearchIndex::build(&dtw, &candidates).unwrap();
+    for gamma in [1.0, 0.02, 0.0] {
+        let index = SearchIndex::build(&dtw_of(gamma), &candidates).unwrap();
         let expected: Vec<_> = queries.iter().map(|q| bits(&index.nearest(q, 70).unwrap())).collect();
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -118,7 +104,7 @@ fn threads_and_company_change_nothing() {
 
 #[test]
 fn bad_input_is_refused_by_name() {
-    let dtw = squared(1.0);
+    let dtw = dtw_of(1.0);
     let none: [Walk; 0] = [];
     let index = SearchIndex::build(&dtw, &[vec![[0.0]], vec![[1e160]]]).unwrap();
     // A candidate whose distance overflows is an error only if it must be returned.
@@ -160,6 +146,6 @@ proptest! {
         gamma in prop_oneof![Just(0.0), 1e-3..10.0_f64],
         n in 1..40_usize,
     ) {
-        compare((gamma, Cost::SquaredEuclidean), &candidates, &[query], n);
+        compare(gamma, &candidates, &[query], n);
     }
 }

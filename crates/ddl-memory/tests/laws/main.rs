@@ -6,7 +6,6 @@ mod crowd;
 
 mod capacity;
 mod file;
-mod future;
 mod recall;
 mod refused;
 

@@ -1,8 +1,5 @@
 //! Affine maps of rows: projections before and after attention, embeddings, fusion of tokens.
 
-#[cfg(test)]
-mod tests;
-
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::product::{BLOCK, End, Matrix, Start, add_transposed_product, multiply, sum_of_rows};
 use ddl_simd::{LANES, Lanes, Simd};

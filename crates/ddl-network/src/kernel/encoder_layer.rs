@@ -10,7 +10,7 @@ mod tests;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::scenes::Frames;
 use crate::kernel::spatial_attention::Attended;
-use crate::kernel::temporal_attention::{KeyValue, TemporalGradients};
+use crate::kernel::temporal_attention::KeyValue;
 use forward_results::AttentionResults;
 pub(crate) use forward_results::{CachedKeyValues, ForwardResults};
 pub use layer::Sizes;
@@ -107,14 +107,10 @@ impl EncoderKernel {
         let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
         let mut of_query = Buffer::zeros(x.len());
         let mut of_newest = CachedKeyValues::zeros(x.len());
-        let mut of_cache: Vec<_> = of_cache.iter_mut().map(|token| token.view_mut()).collect();
-        let gradients = TemporalGradients {
-            query: &mut of_query,
-            cache: &mut of_cache,
-            newest: of_newest.view_mut(),
-        };
+        let of_cache = of_cache.iter_mut().map(|token| token.view_mut());
+        let of_tokens = of_cache.chain([of_newest.view_mut()]).collect();
         self.temporal
-            .backward(query, &views(cache), newest.view(), &of_mixed, gradients);
+            .backward(query, &views(cache), newest.view(), &of_mixed, &mut of_query, of_tokens);
         let of_inputs = [&of_query[..], &of_newest.key, &of_newest.value];
         self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx

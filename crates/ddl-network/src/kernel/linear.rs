@@ -13,8 +13,6 @@ const ROWS: usize = 512;
 /// Results do not depend on the number of threads.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearKernel {
-    inputs: usize,
-    outputs: usize,
     map: Affine,
     dispatch: Dispatch,
 }
@@ -22,8 +20,6 @@ pub(crate) struct LinearKernel {
 impl LinearKernel {
     pub(crate) fn zeros(inputs: usize, outputs: usize) -> Self {
         Self {
-            inputs,
-            outputs,
             map: Affine::new(inputs, outputs),
             dispatch: Dispatch::detect(),
         }
@@ -31,29 +27,29 @@ impl LinearKernel {
 
     /// Replaces the weights: W `[outputs, inputs]`, row-major, then b.
     pub(crate) fn update(&mut self, weights: &[f32]) {
-        let (weight, bias) = weights.split_at(self.outputs * self.inputs);
+        let (weight, bias) = weights.split_at(self.map.outputs * self.map.inputs);
         self.map.update(weight, bias);
     }
 
     /// `x` `[rows, inputs]` -> `[rows, outputs]`.
     pub(crate) fn forward(&self, x: &[f32]) -> Buffer {
         // Rows that are narrower than a vector are written as whole vectors and then put together.
-        let width = self.outputs.max(LANES);
-        let rows = x.len() / self.inputs;
+        let width = self.map.outputs.max(LANES);
+        let rows = x.len() / self.map.inputs;
         let mut wide = Buffer::any(rows * width);
-        let inputs = x.chunks(ROWS * self.inputs);
+        let inputs = x.chunks(ROWS * self.map.inputs);
         let jobs = inputs.zip(wide.chunks_mut(ROWS * width));
         let jobs = jobs.map(|(x, y)| LinearForward {
             map: &self.map,
-            x: MatrixColumns::whole(x, self.inputs),
+            x: MatrixColumns::whole(x, self.map.inputs),
             y: MatrixColumnsMut::whole(y, width),
         });
-        run_each(self.dispatch, jobs, x.len() * self.outputs);
-        if width == self.outputs {
+        run_each(self.dispatch, jobs, x.len() * self.map.outputs);
+        if width == self.map.outputs {
             return wide;
         }
-        let mut y = Buffer::any(rows * self.outputs);
-        for (row, numbers) in y.chunks_exact_mut(self.outputs).zip(wide.chunks_exact(width)) {
+        let mut y = Buffer::any(rows * self.map.outputs);
+        for (row, numbers) in y.chunks_exact_mut(self.map.outputs).zip(wide.chunks_exact(width)) {
             for (to, from) in row.iter_mut().zip(numbers) {
                 *to = *from;
             }
@@ -64,19 +60,19 @@ impl LinearKernel {
     /// The gradient of x; the gradient of the weights is added to `of_weights`.
     pub(crate) fn backward(&self, x: &[f32], gy: &[f32], of_weights: &mut [f32]) -> Buffer {
         let mut gx = Buffer::any(x.len());
-        let pieces = x.len().div_ceil(ROWS * self.inputs);
+        let pieces = x.len().div_ceil(ROWS * self.map.inputs);
         let mut sums = Buffer::many_zeros(pieces, of_weights.len());
-        let inputs = x.chunks(ROWS * self.inputs);
-        let inputs = inputs.zip(gy.chunks(ROWS * self.outputs));
-        let outputs = gx.chunks_mut(ROWS * self.inputs).zip(&mut sums);
+        let inputs = x.chunks(ROWS * self.map.inputs);
+        let inputs = inputs.zip(gy.chunks(ROWS * self.map.outputs));
+        let outputs = gx.chunks_mut(ROWS * self.map.inputs).zip(&mut sums);
         let jobs = inputs.zip(outputs).map(|((x, gy), (gx, sums))| LinearBackward {
             map: &self.map,
-            x: MatrixColumns::whole(x, self.inputs),
-            gy: MatrixColumns::whole(gy, self.outputs),
-            gx: MatrixColumnsMut::whole(gx, self.inputs),
-            of_weights: sums.split_at_mut(self.outputs * self.inputs).into(),
+            x: MatrixColumns::whole(x, self.map.inputs),
+            gy: MatrixColumns::whole(gy, self.map.outputs),
+            gx: MatrixColumnsMut::whole(gx, self.map.inputs),
+            of_weights: sums.split_at_mut(self.map.outputs * self.map.inputs).into(),
         });
-        let work = 2 * x.len() * self.outputs;
+        let work = 2 * x.len() * self.map.outputs;
         run_each(self.dispatch, jobs, work);
         for sums in &sums {
             for (sum, term) in of_weights.iter_mut().zip(sums.iter()) {

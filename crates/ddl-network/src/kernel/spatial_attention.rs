@@ -12,14 +12,13 @@ use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::heads::Heads;
 use crate::kernel::scenes::Frames;
-use crate::kernel::threads::run_buffered;
 use backward::SceneBackward;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
 use ddl_simd::{Dispatch, Lanes};
 use dropout::WeightDecisions;
 use forward::SceneForward;
-use queries::{SceneBuffers, SceneTask};
+use queries::{SceneTask, run_buffered};
 
 /// Cost of a pair of a query and a key, in multiplications.
 const WORK_OF_A_PAIR: usize = 50;
@@ -104,7 +103,7 @@ impl SpatialAttention {
             }));
         }
         let work = self.work(frames, entries);
-        run_buffered::<_, SceneBuffers>(self.dispatch, jobs, work);
+        run_buffered(self.dispatch, jobs, work);
         attended
     }
 
@@ -149,7 +148,7 @@ impl SpatialAttention {
             });
         }
         let work = self.work(frames, entries);
-        run_buffered::<_, SceneBuffers>(self.dispatch, jobs, work);
+        run_buffered(self.dispatch, jobs, work);
     }
 
     fn work(&self, frames: Frames<'_>, entries: usize) -> usize {

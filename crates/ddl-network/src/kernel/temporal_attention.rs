@@ -7,13 +7,12 @@ mod sixteen_heads;
 mod tests;
 
 use crate::kernel::heads::Heads;
-use crate::kernel::threads::run_buffered;
+use crate::kernel::threads::run_each;
 use backward::TemporalBackward;
 use ddl_simd::Dispatch;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
 use forward::TemporalForward;
-use sixteen_heads::TemporalBuffers;
 pub(crate) use sixteen_heads::{KeyValue, KeyValueMut};
 
 /// Rows in a job. They fill whole vectors with any number of heads.
@@ -31,14 +30,6 @@ const WORK_OF_A_NUMBER: usize = 8;
 pub(crate) struct TemporalAttention {
     heads: Heads,
     dispatch: Dispatch,
-}
-
-/// The gradients to which [`TemporalAttention::backward`] adds.
-pub(crate) struct TemporalGradients<'a, 'b> {
-    /// `[rows, heads, head width]`.
-    pub(crate) query: &'a mut [f32],
-    pub(crate) cache: &'b mut [KeyValueMut<'a>],
-    pub(crate) newest: KeyValueMut<'a>,
 }
 
 impl TemporalAttention {
@@ -72,44 +63,36 @@ impl TemporalAttention {
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
         let chunks = mixed.chunks_mut(chunk).enumerate();
-        let jobs: Vec<TemporalForward<'_>> = chunks
-            .map(|(i, mixed)| TemporalForward {
-                first: i * chunk,
-                query,
-                cache,
-                newest,
-                mixed,
-            })
-            .collect();
-        run_buffered::<_, TemporalBuffers>(self.dispatch, jobs, work(query, cache));
+        let jobs = chunks.map(|(i, mixed)| TemporalForward {
+            first: i * chunk,
+            query,
+            cache,
+            newest,
+            mixed,
+        });
+        run_each(self.dispatch, jobs, work(query, cache));
     }
 
     /// Adds the gradients of the inputs of [`TemporalAttention::forward`], from that of its output.
-    /// All shapes are `[rows, heads, head width]`, also those of the cached tokens.
+    /// All shapes are `[rows, heads, head width]`, also those of the cached tokens. `token_gradients` are those of the
+    /// cached tokens, then of the newest token.
     pub(crate) fn backward(
         &self,
         query: &[f32],
         cache: &[KeyValue<'_>],
         newest: KeyValue<'_>,
         mixed_gradient: &[f32],
-        gradients: TemporalGradients<'_, '_>,
+        mut query_gradient: &mut [f32],
+        mut token_gradients: Vec<KeyValueMut<'_>>,
     ) {
         self.check(query, newest, mixed_gradient);
-        let KeyValueMut { key, value } = &gradients.newest;
-        self.check(query, KeyValue { key, value }, gradients.query);
-        assert_eq!(cache.len(), gradients.cache.len(), "cached tokens");
-        for (token, gradient) in cache.iter().zip(gradients.cache.iter()) {
+        assert_eq!(query_gradient.len(), query.len(), "gradient of queries");
+        assert_eq!(cache.len() + 1, token_gradients.len(), "cached tokens");
+        for (token, gradient) in cache.iter().chain([&newest]).zip(&token_gradients) {
             self.check(query, *token, gradient.key);
             assert_eq!(gradient.value.len(), query.len(), "gradient of values");
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
-        let TemporalGradients {
-            query: mut query_gradient,
-            cache: token_gradients,
-            newest: newest_gradient,
-        } = gradients;
-        let mut token_gradients: Vec<KeyValueMut<'_>> = token_gradients.iter_mut().map(KeyValueMut::reborrow).collect();
-        token_gradients.push(newest_gradient);
         let mut jobs = Vec::new();
         for first in (0..query.len()).step_by(chunk) {
             let count = chunk.min(query.len() - first);
@@ -124,7 +107,7 @@ impl TemporalAttention {
                 token_gradients: tokens.map(|token| token.split_off(count)).collect(),
             });
         }
-        run_buffered::<_, TemporalBuffers>(self.dispatch, jobs, work(query, cache));
+        run_each(self.dispatch, jobs.into_iter(), work(query, cache));
     }
 
     fn check(&self, query: &[f32], newest: KeyValue<'_>, mixed: &[f32]) {

@@ -166,7 +166,6 @@ def value(
     y: ArrayLike,
     gamma: float = 1.0,
     *,
-    cost: str = "squared_euclidean",
     normalised: bool = False,
 ) -> float:
     """Soft-DTW of two sequences.
@@ -176,9 +175,7 @@ def value(
     x, y
         (n, components) and (m, components), or (n,) and (m,).
     gamma
-        Smoothing, in the unit of the cost; 0 is hard DTW.
-    cost
-        ``"squared_euclidean"`` or ``"euclidean"`` distance of two steps.
+        Smoothing, in the unit of the squared distance of two steps; 0 is hard DTW.
     normalised
         D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 
@@ -193,20 +190,13 @@ def value_and_gradient(
     y: ArrayLike,
     gamma: float = 1.0,
     *,
-    cost: str = "squared_euclidean",
     normalised: bool = False,
 ) -> tuple[float, Floats]:
     """Soft-DTW, and its gradient (n, components) with respect to ``x``; see :func:`value`."""
 
 @final
 class SearchIndex:
-    def __new__(
-        cls,
-        candidates: Sequence[ArrayLike],
-        gamma: float = 1.0,
-        *,
-        cost: str = "squared_euclidean",
-    ) -> SearchIndex: ...
+    def __new__(cls, candidates: Sequence[ArrayLike], gamma: float = 1.0) -> SearchIndex: ...
     def __len__(self) -> int: ...
     def nearest(self, queries: Sequence[ArrayLike], n: int) -> tuple[Integers, Floats]: ...
 

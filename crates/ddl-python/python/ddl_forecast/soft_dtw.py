@@ -33,8 +33,8 @@ class SearchIndex:
     ----------
     candidates
         Sequences of any lengths, with the same number of components.
-    gamma, cost
-        As for :func:`value`. With the cost ``"euclidean"`` a search compares all pairs, which takes longer.
+    gamma
+        As for :func:`value`.
 
     Examples
     --------
@@ -46,14 +46,8 @@ class SearchIndex:
     (1, (2,))
     """
 
-    def __init__(
-        self,
-        candidates: Sequence[ArrayLike],
-        gamma: float = 1.0,
-        *,
-        cost: str = "squared_euclidean",
-    ) -> None:
-        self._core = _core.SearchIndex(list(candidates), gamma, cost=cost)
+    def __init__(self, candidates: Sequence[ArrayLike], gamma: float = 1.0) -> None:
+        self._core = _core.SearchIndex(list(candidates), gamma)
 
     def __len__(self) -> int:
         return len(self._core)

@@ -1,7 +1,7 @@
 //! The error bound of the scores, and what survives the sieve.
 
 use super::{CandidateSieve, Search};
-use crate::{Cost, SoftDtw};
+use crate::SoftDtw;
 use ddl_simd::{Dispatch, InstructionSet};
 
 /// Velocities around a few walking directions, some of them nearly standing.
@@ -18,7 +18,7 @@ fn walks(count: usize, steps: usize, offset: f64) -> Vec<Vec<[f64; 2]>> {
 }
 
 fn sieve(gamma: f64, walks: &[Vec<[f64; 2]>]) -> (SoftDtw, Vec<f64>, Option<CandidateSieve<2>>) {
-    let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid");
+    let dtw = SoftDtw::new(gamma).expect("valid");
     let self_values: Vec<f64> = walks.iter().map(|walk| dtw.self_value(walk)).collect();
     let slices: Vec<&[[f64; 2]]> = walks.iter().map(Vec::as_slice).collect();
     let sieve = CandidateSieve::build(gamma, &slices, &self_values);

@@ -2,12 +2,12 @@
 
 #![allow(dead_code, reason = "each program needs a part")]
 
-use ddl_softdtw::{Cost, SoftDtw};
+use ddl_softdtw::SoftDtw;
 
 pub(crate) type Track<const D: usize> = Vec<[f64; D]>;
 
-pub(crate) fn squared(gamma: f64) -> SoftDtw {
-    SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid")
+pub(crate) fn dtw_of(gamma: f64) -> SoftDtw {
+    SoftDtw::new(gamma).expect("valid")
 }
 
 pub(crate) fn mapped(tracks: &[Track<2>], scale: f64, by: f64) -> Vec<Track<2>> {

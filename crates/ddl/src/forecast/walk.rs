@@ -46,46 +46,23 @@ pub(crate) struct Walk {
     pub(crate) certificate: LyapunovCertificate<f64>,
 }
 
-/// Computes the metric of each step once, for the integrator and for the certificate.
-///
-/// This is valid because an [`ArrivingSchedule`] depends only on the step and the position of a state.
-#[derive(Debug)]
-struct MetricCache {
-    metrics: ArrivingSchedule<f64>,
-    /// Indexed by step: the position at which the metric was computed, and the metric.
-    computed: RefCell<Vec<(Vector2<f64>, CholeskyMetric<f64, 2>)>>,
-}
-
-impl MetricSource<f64, 2> for MetricCache {
-    fn metric(&self, state: &State<f64, 2>) -> Result<CholeskyMetric<f64, 2>, DynamicsError> {
-        let mut computed = self.computed.borrow_mut();
-        match computed.get(state.step) {
-            Some((position, metric)) if *position == state.position => Ok(*metric),
-            _ => {
-                let metric = self.metrics.metric(state)?;
-                if computed.len() == state.step {
-                    computed.push((state.position, metric));
-                }
-                Ok(metric)
-            }
-        }
-    }
-}
-
 impl Approach {
     /// Integrates the approach with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
-        let metrics = self.metrics(factors)?;
-        let metrics = MetricCache {
-            metrics: ArrivingSchedule::new(metrics, attractor, self.bounds, self.time_step)?,
-            computed: RefCell::new(Vec::with_capacity(HORIZON)),
+        let schedule = ArrivingSchedule::new(self.metrics(factors)?, attractor, self.bounds, self.time_step)?;
+        // The rollout asks once for each step, at the positions that the certificate needs too.
+        let metrics = RefCell::new(Vec::with_capacity(HORIZON));
+        let source = |state: &State<f64, 2>| {
+            let metric = schedule.metric(state)?;
+            metrics.borrow_mut().push(metric);
+            Ok(metric)
         };
-        let flow = NaturalGradientFlow::new(attractor, metrics);
+        let flow = NaturalGradientFlow::new(attractor, source);
         let mut path = [Vector2::zeros(); HORIZON + 1];
         let start = Vector2::from(self.start);
         rollout_into(&flow, &StableEuler, start, self.time_step, &mut path)?;
-        let certificate = LyapunovCertificate::of_rollout(&flow, &path, self.time_step)?;
+        let certificate = LyapunovCertificate::new(&path, &metrics.take(), &attractor, self.time_step)?;
         Ok(Walk {
             certificate: certificate.within(&path, &attractor, &self.bounds)?,
             positions: std::array::from_fn(|t| path[t + 1].into()),

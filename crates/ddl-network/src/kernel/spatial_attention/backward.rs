@@ -6,8 +6,7 @@
 
 use crate::kernel::heads;
 use crate::kernel::quads::{Quads as _, ZERO_QUAD};
-use crate::kernel::spatial_attention::queries::{SceneBuffers, SceneTask, UNSEEN};
-use crate::kernel::threads::Buffered;
+use crate::kernel::spatial_attention::queries::{Buffered, SceneBuffers, SceneTask, UNSEEN};
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors};
 
 pub(super) struct SceneBackward<'a> {
@@ -21,7 +20,7 @@ pub(super) struct SceneBackward<'a> {
     pub(super) gradients: [&'a mut [f32]; 3],
 }
 
-impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
+impl Kernel for Buffered<'_, SceneBackward<'_>> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
         let task = self.job.task.clone();
@@ -36,7 +35,7 @@ impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     }
 }
 
-impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
+impl Buffered<'_, SceneBackward<'_>> {
     #[inline(always)]
     fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize) {
         let task = self.job.task.clone();

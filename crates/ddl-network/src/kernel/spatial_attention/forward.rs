@@ -3,8 +3,7 @@
 use crate::kernel::heads;
 use crate::kernel::quads::Quads as _;
 use crate::kernel::scenes::SeenKey;
-use crate::kernel::spatial_attention::queries::{SceneBuffers, SceneTask, UNSEEN};
-use crate::kernel::threads::Buffered;
+use crate::kernel::spatial_attention::queries::{Buffered, SceneTask, UNSEEN};
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd};
 use fearless_simd::prelude::*;
 
@@ -17,7 +16,7 @@ pub(super) struct SceneForward<'a> {
     pub(super) normalisers: &'a mut [[Lanes; 2]],
 }
 
-impl Kernel for Buffered<'_, SceneForward<'_>, SceneBuffers> {
+impl Kernel for Buffered<'_, SceneForward<'_>> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
         let task = self.job.task.clone();
@@ -31,7 +30,7 @@ impl Kernel for Buffered<'_, SceneForward<'_>, SceneBuffers> {
     }
 }
 
-impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
+impl Buffered<'_, SceneForward<'_>> {
     #[inline(always)]
     fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize) {
         let (task, row) = (&self.job.task, self.job.task.heads.row());

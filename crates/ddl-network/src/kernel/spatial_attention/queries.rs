@@ -4,11 +4,10 @@ use crate::kernel::heads::{self, GROUP, Heads, row_of};
 use crate::kernel::quads::{HalfQuad, Quad, Quads as _, ZERO_QUAD};
 use crate::kernel::scenes::SceneView;
 use crate::kernel::spatial_attention::dropout::{LaneBits, WeightDecisions};
-use crate::kernel::threads::JobBuffers;
-use ddl_simd::{LANES, Lanes, Simd};
-use std::cell::Cell;
+use crate::kernel::threads::run_jobs;
+use ddl_simd::{Dispatch, Kernel, LANES, Lanes, Simd};
+use std::cell::RefCell;
 use std::ops::Range;
-use std::thread::LocalKey;
 
 /// A block of queries of a scene and the keys that they read.
 #[derive(Clone, Debug)]
@@ -74,11 +73,27 @@ pub(super) struct SceneBuffers {
     pub(super) codes: Vec<u8>,
 }
 
-impl JobBuffers for SceneBuffers {
-    fn of_thread() -> &'static LocalKey<Cell<Self>> {
-        thread_local!(static BUFFERS: Cell<SceneBuffers> = Cell::default());
-        &BUFFERS
-    }
+thread_local! {
+    /// As large as the largest scene of the thread. Those of a small one would take as long to allocate as to use.
+    static BUFFERS: RefCell<SceneBuffers> = RefCell::default();
+}
+
+/// A job, with the buffers of its thread.
+pub(super) struct Buffered<'b, J> {
+    pub(super) job: J,
+    pub(super) buffers: &'b mut SceneBuffers,
+}
+
+/// Runs all jobs, of `work` multiplications together.
+pub(super) fn run_buffered<J: Send>(dispatch: Dispatch, jobs: Vec<J>, work: usize)
+where
+    for<'b> Buffered<'b, J>: Kernel,
+{
+    run_jobs(jobs, work, |job| {
+        BUFFERS.with_borrow_mut(|buffers| {
+            dispatch.run(Buffered { job, buffers });
+        });
+    });
 }
 
 /// The terms added to the scores of two queries, indexed by the visibility code.

@@ -6,9 +6,8 @@
 use crate::kernel::heads::SCALE;
 use crate::kernel::quads::Quads as _;
 use crate::kernel::temporal_attention::sixteen_heads::{
-    GROUP_NUMBERS, KeyValue, KeyValueMut, SixteenHeads, TemporalBuffers, accumulate, dot, soften, weighted,
+    GROUP_NUMBERS, KeyValue, KeyValueMut, SixteenHeads, accumulate, dot, soften, weighted,
 };
-use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd};
 use fearless_simd::prelude::*;
 
@@ -25,31 +24,31 @@ pub(super) struct TemporalBackward<'a> {
     pub(super) token_gradients: Vec<KeyValueMut<'a>>,
 }
 
-impl Kernel for Buffered<'_, TemporalBackward<'_>, TemporalBuffers> {
+impl Kernel for TemporalBackward<'_> {
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) {
-        let length = self.job.query_gradient.len();
-        self.buffers.taken.resize(self.job.cache.len() + 1, Lanes::ZERO);
+        let length = self.query_gradient.len();
+        let mut buffers = [0; 2].map(|_| vec![Lanes::ZERO; self.cache.len() + 1]);
         for group in (0..length).step_by(GROUP_NUMBERS) {
-            self.group(simd, SixteenHeads::new(self.job.first, group, length), group);
+            self.group(simd, SixteenHeads::new(self.first, group, length), group, &mut buffers);
         }
     }
 }
 
-impl Buffered<'_, TemporalBackward<'_>, TemporalBuffers> {
+impl TemporalBackward<'_> {
+    /// The buffers have for each token: its score, then power, then weight; and the product of its value and the
+    /// gradient of the mixed values.
     #[inline(always)]
-    fn group<S: Simd>(&mut self, simd: S, place: SixteenHeads, first: usize) {
-        let (job, buffers) = (&mut self.job, &mut *self.buffers);
+    fn group<S: Simd>(&mut self, simd: S, place: SixteenHeads, first: usize, [powers, taken]: &mut [Vec<Lanes>; 2]) {
         let query = simd.scaled(
-            place.load(simd, job.query),
+            place.load(simd, self.query),
             simd.splat(SCALE * std::f32::consts::LOG2_E),
         );
-        let mixed_gradient = place.load(simd, job.mixed_gradient);
-        let powers = &mut buffers.powers;
-        let share = soften(simd, place, query, job.cache, job.newest, powers, false);
+        let mixed_gradient = place.load(simd, self.mixed_gradient);
+        let share = soften(simd, place, query, self.cache, self.newest, powers, false);
         let mut mean = simd.splat(0.0);
-        let tokens = job.cache.iter().chain([&job.newest]);
-        for ((power, taken), token) in powers.iter_mut().zip(&mut buffers.taken).zip(tokens) {
+        let tokens = self.cache.iter().chain([&self.newest]);
+        for ((power, taken), token) in powers.iter_mut().zip(&mut *taken).zip(tokens) {
             let product = dot(simd, mixed_gradient, place.load(simd, token.value));
             let weight = simd.load(&power.0) * share;
             mean = weight.mul_add(product, mean);
@@ -57,9 +56,9 @@ impl Buffered<'_, TemporalBackward<'_>, TemporalBuffers> {
             simd.store(product, &mut taken.0);
         }
         let mut query_gradient = [simd.splat(0.0); DEPTH];
-        let tokens = job.cache.iter().chain([&job.newest]);
-        let tokens = tokens.zip(&mut job.token_gradients);
-        for ((weight, taken), (token, gradients)) in powers.iter().zip(&buffers.taken).zip(tokens) {
+        let tokens = self.cache.iter().chain([&self.newest]);
+        let tokens = tokens.zip(&mut self.token_gradients);
+        for ((weight, taken), (token, gradients)) in powers.iter().zip(&*taken).zip(tokens) {
             let weight = simd.load(&weight.0);
             let score_gradient = weight * (simd.load(&taken.0) - mean);
             // Undoes the scaling of the queries, which makes scores exponents of two.
@@ -73,6 +72,6 @@ impl Buffered<'_, TemporalBackward<'_>, TemporalBuffers> {
             query_gradient = accumulate(simd, query_gradient, score_gradient, place.load(simd, token.key));
         }
         let gradient = simd.scaled(query_gradient, simd.splat(SCALE));
-        place.add(simd, gradient, &mut job.query_gradient[first..]);
+        place.add(simd, gradient, &mut self.query_gradient[first..]);
     }
 }

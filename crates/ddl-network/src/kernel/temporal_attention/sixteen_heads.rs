@@ -4,11 +4,8 @@
 //! are in the order that transposing pieces of four lanes gives: head 4 k + i in lane 4 i + k.
 
 use crate::kernel::heads::HEAD_WIDTH;
-use crate::kernel::threads::JobBuffers;
 use ddl_simd::{DEPTH, Floats, LANES, Lanes, Simd, Vectors};
 use fearless_simd::prelude::*;
-use std::cell::Cell;
-use std::thread::LocalKey;
 
 /// Keys and values of one token for each row, `[rows, heads, head width]` each.
 #[derive(Clone, Copy, Debug)]
@@ -21,15 +18,6 @@ pub(crate) struct KeyValue<'a> {
 pub(crate) struct KeyValueMut<'a> {
     pub(crate) key: &'a mut [f32],
     pub(crate) value: &'a mut [f32],
-}
-
-impl KeyValueMut<'_> {
-    pub(super) fn reborrow(&mut self) -> KeyValueMut<'_> {
-        KeyValueMut {
-            key: self.key,
-            value: self.value,
-        }
-    }
 }
 
 impl<'a> KeyValueMut<'a> {
@@ -51,22 +39,6 @@ const PREFETCHED_FROM: usize = 1 << 17;
 /// Whether these tokens are prefetched. The processor's newest prefetcher follows fewer streams than there are tokens.
 pub(super) fn are_prefetched(cache: &[KeyValue<'_>]) -> bool {
     cache.iter().map(|token| token.key.len()).sum::<usize>() >= PREFETCHED_FROM
-}
-
-/// Buffers for sixteen heads, reused by the next group.
-#[derive(Clone, Debug, Default)]
-pub(super) struct TemporalBuffers {
-    /// For each token: scores, then powers.
-    pub(super) powers: Vec<Lanes>,
-    /// For each token: the product of its value and the gradient of the mixed values.
-    pub(super) taken: Vec<Lanes>,
-}
-
-impl JobBuffers for TemporalBuffers {
-    fn of_thread() -> &'static LocalKey<Cell<Self>> {
-        thread_local!(static BUFFERS: Cell<TemporalBuffers> = Cell::default());
-        &BUFFERS
-    }
 }
 
 /// The numbers of sixteen heads.
@@ -220,12 +192,11 @@ pub(super) fn soften<S: Simd>(
     query: Vectors<S>,
     cache: &[KeyValue<'_>],
     newest: KeyValue<'_>,
-    powers: &mut Vec<Lanes>,
+    powers: &mut [Lanes],
     prefetched: bool,
 ) -> Floats<S> {
-    powers.resize(cache.len() + 1, Lanes::ZERO);
     let mut largest = simd.splat(f32::NEG_INFINITY);
-    for (token, power) in cache.iter().chain([&newest]).zip(powers.iter_mut()) {
+    for (token, power) in cache.iter().chain([&newest]).zip(&mut *powers) {
         if prefetched && place.whole() {
             place.prefetch(simd, token.key);
             place.prefetch(simd, token.value);

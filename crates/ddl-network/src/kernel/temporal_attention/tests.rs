@@ -1,7 +1,7 @@
 //! Comparison with the formula in double precision.
 
 use crate::kernel::heads::HEAD_WIDTH;
-use crate::kernel::temporal_attention::{KeyValue, KeyValueMut, TemporalAttention, TemporalGradients};
+use crate::kernel::temporal_attention::{KeyValue, KeyValueMut, TemporalAttention};
 use crate::kernel::tests::attention::Attention;
 use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
 use ddl_simd::{Dispatch, InstructionSet};
@@ -49,14 +49,8 @@ impl TemporalCase {
         let mut query = before.clone();
         let mut tokens = vec![[before.clone(), before]; self.tokens.len()];
         let gradients = tokens.iter_mut().map(|[key, value]| KeyValueMut { key, value });
-        let mut gradients: Vec<KeyValueMut<'_>> = gradients.collect();
-        let newest_gradient = gradients.pop().unwrap();
-        let gradients = TemporalGradients {
-            query: &mut query,
-            cache: &mut gradients,
-            newest: newest_gradient,
-        };
-        attention.backward(&self.query, &cache, newest, &self.gradient, gradients);
+        let gradients = gradients.collect();
+        attention.backward(&self.query, &cache, newest, &self.gradient, &mut query, gradients);
         TemporalResults { mixed, query, tokens }
     }
 
