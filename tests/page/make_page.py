@@ -1,21 +1,19 @@
 """Makes the pages that check_page.py opens: make_page.py FOLDER PROGRAM
 
-`ddl evaluate` scores a stand-in with six weighted goals on the simulated crowds, and `ddl report` joins the folds with
-invented training curves into FOLDER/report.html and its data. `ddl view` makes FOLDER/viewer.html of the sample,
+`ddl evaluate` scores a stand-in with six weighted goals on the simulated crowds, and `ddl report` joins the folds
+into FOLDER/report.html and its data. `ddl view` makes FOLDER/viewer.html of the sample,
 and FOLDER/joint.html with its joint futures.
 """
 
 import json
 import math
 import pathlib
-import shutil
 import subprocess
 import sys
 import tempfile
 
 SAMPLE = pathlib.Path(__file__).parents[2] / "datasets/sample.csv"
 FOLDS = ("corridor", "crossing", "plaza", "bottleneck", "doorway")
-VARIANTS = ("full", "no-dynamics", "no-goal-shift")
 TURNS = (-30, 0, 30)  # degrees
 SPEEDS = (0.6, 1.0)
 
@@ -53,14 +51,6 @@ def forecast(line):
     return json.dumps(pedestrian | {"hypotheses": forecast}) + "\n"
 
 
-def epoch(number, fold, variant, seed):
-    floor = 0.02 + 0.006 * fold + 0.012 * variant
-    wobble, later = (math.sin(math.tau * (0.37 * at + 0.3 * seed)) for at in (number, number + 3))
-    descent = math.exp(-number / (4 + variant))
-    loss, error = floor * (1 + 0.04 * wobble) + 0.3 * descent, 5 * floor * (1 + 0.05 * later) + 0.5 * descent
-    return {"epoch": number, "loss": loss, "batches": 10, "seconds": 12.0, "validation": error}
-
-
 def as_published(path):
     """The rows also under the protocol that a page warns of; a file's forecasts cannot be measured under it."""
     report = json.loads(path.read_text())
@@ -75,10 +65,9 @@ def main():
     def ddl(*arguments):
         return subprocess.run([program, *arguments], check=True, capture_output=True, text=True).stdout
 
-    config = json.loads(ddl("info", "zara1", "--json"))["config"]
     with tempfile.TemporaryDirectory() as temporary:
         work, results = pathlib.Path(temporary), []
-        for index, fold in enumerate(FOLDS):
+        for fold in FOLDS:
             scene = ("--convention", "simulated", "--fold", fold, "--window-rule", "published")
             forecasts, evaluated = work / "forecasts.jsonl", work / fold
             lines = ddl("windows", *scene).splitlines()
@@ -87,16 +76,6 @@ def main():
             ddl("evaluate", *scene, *named, "--out", evaluated)
             as_published(evaluated / "report.json")
             results.append(evaluated)
-            for variant, name in enumerate(VARIANTS):
-                for seed in (1, 2):
-                    run = work / f"{fold}-{name}-{seed}"
-                    run.mkdir()
-                    config["data"]["fold"], config["star"]["variant"], config["training"]["seed"] = fold, name, seed
-                    (run / "config.json").write_text(json.dumps(config))
-                    epochs = (epoch(number, index, variant, seed) for number in range(1, 31))
-                    (run / "metrics.jsonl").write_text("".join(json.dumps(one) + "\n" for one in epochs))
-                    shutil.copy(evaluated / "report.json", run)
-                    results.append(run)
         ddl("report", *results, "--title", "A stand-in on simulated crowds", "--out", folder)
     ddl("view", SAMPLE, "--moments", "8", "--no-open", "--output", folder / "viewer.html")
     ddl("view", SAMPLE, "--moments", "8", "--joint", "--no-open", "--output", folder / "joint.html")

@@ -8,9 +8,7 @@ mod literature;
 pub mod page;
 mod report;
 mod snapshot;
-mod training_curve;
 
 pub use error::ReportError;
 pub use report::Report;
 pub use snapshot::{ForecastSnapshot, Highlight, HighlightKind, SnapshotHypothesis, SnapshotPedestrian};
-pub use training_curve::{EpochPoint, TrainingCurve};

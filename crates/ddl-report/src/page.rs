@@ -10,7 +10,6 @@ mod moment_data;
 mod player;
 mod report_page;
 mod standing;
-mod training_section;
 mod viewer;
 
 pub use report_page::Page;

@@ -8,56 +8,42 @@ use crate::figure::drawing::Drawing;
 use crate::page::headline_chart::{ChartShape, headline_chart};
 use crate::page::moment_check::{self, Truth};
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
-use crate::page::{gallery_section, headline, moment_data, standing, training_section};
+use crate::page::{gallery_section, headline, moment_data, standing};
 use crate::report::{Report, watching_figures};
 use crate::snapshot::ForecastSnapshot;
-use crate::training_curve::TrainingCurve;
 
 const CASES_KEY: &str = include_str!("cases_key.html");
-/// Scripts of the rest of this page, run after those of the player.
-const REPORT_SCRIPTS: [&str; 2] = [include_str!("script/curves.js"), include_str!("script/report_file.js")];
+/// The script of the rest of this page, run after those of the player.
+const REPORT_SCRIPT: &str = include_str!("script/report_file.js");
 
-/// Content of a page: the report, moments and training curves.
+/// Content of a page: the report and moments.
 #[derive(Debug, Clone, Copy)]
 pub struct Page<'a> {
     /// The results.
     pub report: &'a Report,
     /// Moments for the player; those with [picks](ForecastSnapshot::picks) are also shown in the gallery.
     pub moments: &'a [ForecastSnapshot],
-    /// Training curves.
-    pub curves: &'a [TrainingCurve],
 }
 
 impl<'a> Page<'a> {
-    /// A page with only the report, without moments and training curves.
+    /// A page with only the report, without moments.
     pub fn new(report: &'a Report) -> Self {
-        let (moments, curves) = (&[], &[]);
-        Self {
-            report,
-            moments,
-            curves,
-        }
+        Self { report, moments: &[] }
     }
 
     /// The HTML text of the page.
     ///
     /// # Errors
-    /// A moment is incomplete, or the epochs of a curve do not ascend; the error names it.
+    /// A moment is incomplete; the error names it.
     pub fn to_html(&self) -> Result<String, ReportError> {
         self.check()?;
         let moments = moment_data::to_json(self.moments)?;
-        let curves = serde_json::to_string(self.curves)?;
         let report = self.report.to_json()?;
-        let data: [(&str, &str); 3] = [
-            ("report-json", &report),
-            ("moments-json", &moments),
-            ("curves-json", &curves),
-        ];
+        let data: [(&str, &str); 2] = [("report-json", &report), ("moments-json", &moments)];
         let links = [
             ("results", "Results"),
             ("player", "Player"),
             ("cases", "Cases"),
-            ("training", "Training"),
             ("tables", "Tables"),
         ];
         let body = html! {
@@ -72,7 +58,7 @@ impl<'a> Page<'a> {
                         button type="button" id="save-report" { "Save report.json" }
                     }
                 }
-                (scripts(&data, &[&PLAYER_SCRIPTS[..], &REPORT_SCRIPTS].concat()))
+                (scripts(&data, &[&PLAYER_SCRIPTS[..], &[REPORT_SCRIPT]].concat()))
             }
         };
         Ok(document(self.report.title(), &body).into_string())
@@ -93,10 +79,6 @@ impl<'a> Page<'a> {
                 h2 { "Cases" }
                 ul.key aria-label="Legend" { (PreEscaped(CASES_KEY)) }
                 (gallery_section::html(self.moments))
-            }
-            section #training {
-                h2 { "Training" }
-                (training_section::html(self.curves))
             }
             section #tables {
                 h2 { "All tables" }
@@ -121,7 +103,6 @@ impl<'a> Page<'a> {
             figures.push(("comparison".to_owned(), headline_chart(&standing, ChartShape::Wide)));
         }
         figures.extend(gallery_section::figures(self.moments));
-        figures.extend(training_section::figures(self.curves));
         let mut used: Vec<String> = Vec::new();
         let figures = figures
             .into_iter()
@@ -132,7 +113,6 @@ impl<'a> Page<'a> {
     }
 
     fn check(&self) -> Result<(), ReportError> {
-        moment_check::check(self.moments, Truth::Whole)?;
-        training_section::check(self.curves)
+        moment_check::check(self.moments, Truth::Whole)
     }
 }

@@ -4,7 +4,7 @@ use ddl_core::Forecast;
 use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 use ddl_report::{
-    EpochPoint, ForecastSnapshot, Highlight, HighlightKind, Report, TrainingCurve,
+    ForecastSnapshot, Highlight, HighlightKind, Report,
     page::{Page, Viewer},
 };
 use proptest::prelude::*;
@@ -71,22 +71,6 @@ fn with_moments(moments: &[ForecastSnapshot]) -> String {
 fn embedded<'a>(html: &'a str, id: &str) -> &'a str {
     let (_, rest) = html.split_once(&format!("id=\"{id}\">")).unwrap();
     rest.split_once("</script>").unwrap().0
-}
-
-fn curve(epochs: &[usize]) -> TrainingCurve {
-    let point = |&epoch: &usize| EpochPoint {
-        epoch,
-        loss: 1.0 / epoch as f64,
-        validation: None,
-        seconds: 1.0,
-    };
-    TrainingCurve {
-        fold: "eth".to_owned(),
-        variant: "full".to_owned(),
-        seed: 1,
-        loss: "loss, m²".to_owned(),
-        epochs: epochs.iter().map(point).collect(),
-    }
 }
 
 #[test]
@@ -177,13 +161,10 @@ fn names_cannot_become_markup() {
     bad.recording = hostile.to_owned();
     bad.forecaster = hostile.to_owned();
     bad.picks = vec![pick(HighlightKind::Turning, vec![1], hostile)];
-    let mut trained = curve(&[1, 2]);
-    trained.variant = hostile.to_owned();
     let report = report();
     let page = Page {
         report: &report,
         moments: &[bad],
-        curves: &[trained],
     };
     let html = page.to_html().unwrap();
     for end in ["<script>alert", "</script><script>a", "<!-- x"] {
@@ -208,7 +189,6 @@ fn figures_are_files_of_their_own() {
     let page = Page {
         report: &report,
         moments: &[picked, moment(1, 1, false)],
-        curves: &[curve(&[1, 2, 5]), curve(&[7])],
     };
     let figures = page.figures().unwrap();
     let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
@@ -218,8 +198,7 @@ fn figures_are_files_of_their_own() {
             "comparison.svg",
             "case-walking-together-scene-70.svg",
             "case-walking-together-scene-70-2.svg",
-            "case-turning-scene-70.svg",
-            "training-eth-loss-m.svg"
+            "case-turning-scene-70.svg"
         ]
     );
     for (_, svg) in &figures {
@@ -237,7 +216,6 @@ fn what_is_not_there_is_said() {
         "<section id=\"player\" class=\"empty\">",
         "No moments were recorded",
         "No cases were picked",
-        "no training was recorded",
     ] {
         assert!(html.contains(words), "{words}");
     }
@@ -287,12 +265,6 @@ fn what_is_not_whole_is_refused_by_name() {
         assert!(words.starts_with(&expected), "{words}");
         assert_eq!(page.figures().unwrap_err().to_string(), words);
     }
-    let curves = Page {
-        curves: &[curve(&[1, 3, 3])],
-        ..Page::new(&report)
-    };
-    let words = curves.to_html().unwrap_err().to_string();
-    assert!(words.contains("fold `eth`") && words.contains("epoch 3 follows 3"));
 }
 
 #[test]

@@ -3,10 +3,8 @@
 use crate::error::DdlError;
 use crate::run::directory::{RunDirectory, read_json, write_atomically, write_compact_json};
 use ddl_report::page::Page;
-use ddl_report::{EpochPoint, ForecastSnapshot, Report, TrainingCurve};
+use ddl_report::{ForecastSnapshot, Report};
 use std::path::Path;
-
-const LOSS: &str = "training loss: mean squared error of the next position (m²)";
 
 /// Results of evaluated runs and of other programs' forecasts, with windows for display.
 #[derive(Debug, Clone)]
@@ -16,19 +14,13 @@ pub struct Results {
     pub report: Report,
     /// Windows for display: of other programs' forecasts, and of the runs of the full variant with the lowest seed.
     pub moments: Vec<ForecastSnapshot>,
-    /// The training curves.
-    pub curves: Vec<TrainingCurve>,
 }
 
 impl Results {
     /// Results that do not come from runs, such as those of another program's forecasts.
     #[must_use]
     pub fn new(report: Report, moments: Vec<ForecastSnapshot>) -> Self {
-        Self {
-            report,
-            moments,
-            curves: Vec::new(),
-        }
+        Self { report, moments }
     }
 
     /// Gathers the results in folders that hold a `report.json`: evaluated runs, or results of other programs'
@@ -41,7 +33,6 @@ impl Results {
         let mut results = Self {
             report: Report::new(title, [])?,
             moments: Vec::new(),
-            curves: Vec::new(),
         };
         let mut headline: Vec<(u64, Vec<ForecastSnapshot>)> = Vec::new();
         let mut elsewhere = Vec::new();
@@ -61,21 +52,6 @@ impl Results {
                 continue;
             }
             let config = run.config()?;
-            // Epoch 0 holds the starting weights and has no loss.
-            let trained = run.metrics()?.into_iter().filter(|epoch| epoch.epoch > 0);
-            let epochs = trained.map(|epoch| EpochPoint {
-                epoch: epoch.epoch,
-                loss: epoch.loss,
-                validation: epoch.validation,
-                seconds: epoch.seconds,
-            });
-            results.curves.push(TrainingCurve {
-                fold: config.data.fold.clone(),
-                variant: config.star.name(),
-                seed: config.training.seed,
-                loss: LOSS.to_owned(),
-                epochs: epochs.collect(),
-            });
             if config.star.name() == ddl_network::Variant::Full.name() {
                 headline.push((config.training.seed, read_moments(&run)?));
             }
@@ -106,7 +82,6 @@ impl Results {
         let page = Page {
             report: &self.report,
             moments: &self.moments,
-            curves: &self.curves,
         };
         let drawn = page.figures()?;
         for (name, svg) in &drawn {
