@@ -144,7 +144,7 @@ def decoded(data):
             )
         out = {key: moment[key] for key in ("fold", "forecaster", "recording", "frame")}
         out |= {"frame_step": moment["frameStep"], "pedestrians": pedestrians}
-        yield out | ({"picks": moment["picks"]} if moment["picks"] else {})
+        yield out
 
 
 def path(start, steps):
@@ -196,8 +196,7 @@ def check_player(opened, moments):
     page = opened.page
     page.locator("#player").scroll_into_view_if_needed()
     first = moments[0]
-    start = first["picks"][0]["pedestrians"][0] if first.get("picks") else 0
-    check_pedestrian(opened, first, start)
+    check_pedestrian(opened, first, 0)
 
     # The player plays, by button and by key.
     before, picture, words = opened.time(), opened.picture(), opened.text("#now-words")
@@ -215,7 +214,7 @@ def check_player(opened, moments):
     page.keyboard.press("ArrowLeft")
     assert opened.time() == 18 and page.input_value("#time") == "19"
     page.keyboard.press("End")
-    best = max(first["pedestrians"][start]["hypotheses"], key=lambda h: h["weight"])
+    best = max(first["pedestrians"][0]["hypotheses"], key=lambda h: h["weight"])
     x, y = best["positions"][11]
     assert f"({x:.2f}, {y:.2f})" in opened.text("#now-words"), opened.text("#now-words")
     page.keyboard.press("Home")
@@ -235,10 +234,10 @@ def check_player(opened, moments):
     page.focus(".stage")
     count = len(first["pedestrians"])
     page.keyboard.press("ArrowDown")
-    check_pedestrian(opened, first, (start + 1) % count)
+    check_pedestrian(opened, first, 1 % count)
     page.keyboard.press("ArrowUp")
     page.keyboard.press("ArrowUp")
-    check_pedestrian(opened, first, (start - 1) % count)
+    check_pedestrian(opened, first, -1 % count)
     page.keyboard.press("n")
     assert page.input_value("#choose-moment") == "1"
     page.keyboard.press("p")
@@ -283,13 +282,6 @@ def check_player(opened, moments):
     assert page.locator("#keys").is_visible()
     page.keyboard.press("Escape")
     assert not page.locator("#keys").is_visible()
-
-    # A button of a case starts its moment.
-    button = page.locator("button[data-moment]").last
-    at = int(button.get_attribute("data-moment"))
-    button.click()
-    wait_for(page, "Number(document.getElementById('scene').dataset.time) > 0.2")
-    check_pedestrian(opened, moments[at], int(button.get_attribute("data-pedestrian")))
 
 
 def check_viewer(opened):
@@ -411,7 +403,7 @@ def variants(html, data, folder):
             "-",
         )
         pedestrian["representative"] = 0
-    one["picks"], one["pedestrians"] = [], one["pedestrians"][:1]
+    one["pedestrians"] = one["pedestrians"][:1]
     yield variant(html, folder, "one-hypothesis", [one])
     crowd = max(data, key=lambda moment: len(moment["pedestrians"]))
     for count in (25, 60):
@@ -421,7 +413,7 @@ def variants(html, data, folder):
             pedestrian["pedestrian"] = at
             pedestrian["observed"][0] += 700 * (at // len(crowd["pedestrians"]))
             pedestrians.append(pedestrian)
-        yield variant(html, folder, f"{count}-pedestrians", [crowd | {"pedestrians": pedestrians, "picks": []}])
+        yield variant(html, folder, f"{count}-pedestrians", [crowd | {"pedestrians": pedestrians}])
 
 
 def main():

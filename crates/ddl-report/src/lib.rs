@@ -11,4 +11,4 @@ mod snapshot;
 
 pub use error::ReportError;
 pub use report::Report;
-pub use snapshot::{ForecastSnapshot, Highlight, HighlightKind, SnapshotHypothesis, SnapshotPedestrian};
+pub use snapshot::{ForecastSnapshot, SnapshotHypothesis, SnapshotPedestrian};

@@ -2,7 +2,6 @@
 //! Its numbers come from the `report.json` that is embedded in it; tables are those of
 //! [`Report::to_markdown`](crate::Report::to_markdown).
 
-mod gallery_section;
 mod headline;
 mod headline_chart;
 mod moment_check;

@@ -1,7 +1,5 @@
 //! One window of a recording with its forecast (a snapshot), as data for galleries and the player.
 
-use std::fmt;
-
 use ddl_core::{Forecast, average_displacement, medoid};
 use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position, Window};
 use ddl_eval::metric::stability::RolloutStability;
@@ -38,9 +36,6 @@ pub struct ForecastSnapshot {
     /// Who walks together: indices of pedestrians, in the order of the moment; empty if unknown.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub groups: Vec<Vec<usize>>,
-    /// The reasons to show the snapshot; empty for an evenly spread one.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub picks: Vec<Highlight>,
 }
 
 /// One pedestrian of a [`ForecastSnapshot`].
@@ -84,46 +79,6 @@ pub struct SnapshotHypothesis {
     /// Whether the forecaster's certificate holds; `None` without a certificate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified: Option<bool>,
-}
-
-/// What a [`Highlight`] shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum HighlightKind {
-    /// A pedestrian who reaches the goal of the representative hypothesis.
-    Convergence,
-    /// Pedestrians who walk together.
-    Group,
-    /// A pedestrian who slows down.
-    SlowingDown,
-    /// Pedestrians who pass each other and keep their distance.
-    KeepingDistance,
-    /// A pedestrian who turns.
-    Turning,
-}
-
-impl fmt::Display for HighlightKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Convergence => "convergence",
-            Self::Group => "walking together",
-            Self::SlowingDown => "slowing down",
-            Self::KeepingDistance => "keeping distance",
-            Self::Turning => "turning",
-        })
-    }
-}
-
-/// The reason to show a moment, and the pedestrians concerned.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Highlight {
-    /// What it shows.
-    pub show: HighlightKind,
-    /// Indices of the pedestrians concerned, in the order of the moment.
-    pub pedestrians: Vec<usize>,
-    /// Text that states the rule of the choice, with its numbers.
-    pub rule: String,
 }
 
 impl SnapshotPedestrian {
@@ -196,7 +151,6 @@ impl ForecastSnapshot {
                 .collect(),
             joint: false,
             groups: Vec::new(),
-            picks: Vec::new(),
         }
     }
 }

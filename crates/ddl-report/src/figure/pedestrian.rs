@@ -1,25 +1,14 @@
 //! Draws the observed track and the forecast of one pedestrian, in the same way in every picture.
 
-use ddl_data::{OBSERVED, Position, TIME_STEP};
+use ddl_data::{OBSERVED, Position};
 
 use crate::figure::drawing::Drawing;
-use crate::figure::marks::{arrow, star};
+use crate::figure::marks::star;
 use crate::figure::plan::PlanView;
 use crate::snapshot::{SnapshotHypothesis, SnapshotPedestrian};
 
-const ARROW_EVERY: usize = 3;
-/// Time of the displacement that an arrow of velocity shows, s.
-const ARROW_SECONDS: f64 = 0.8;
-
 fn from_last<'a>(observed: &'a [Position], path: &'a [Position]) -> impl Iterator<Item = &'a Position> {
     observed[OBSERVED - 1..].iter().chain(path)
-}
-
-pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian) {
-    drawing.path("bystander", &plan.path(&pedestrian.observed));
-    let ahead = plan.path(from_last(&pedestrian.observed, &pedestrian.truth));
-    drawing.path("bystander-ahead", &ahead);
-    drawing.circle("bystander-dot", plan.px(pedestrian.observed[OBSERVED - 1]), 2.6);
 }
 
 /// All hypotheses except the representative one; a larger weight gives a darker line.
@@ -52,25 +41,11 @@ pub(crate) fn representative_goal(drawing: &mut Drawing, plan: &PlanView, pedest
     }
 }
 
-/// The representative hypothesis, optionally with arrows of its velocity.
-pub(crate) fn representative(
-    drawing: &mut Drawing,
-    plan: &PlanView,
-    pedestrian: &SnapshotPedestrian,
-    with_velocities: bool,
-) {
+pub(crate) fn representative(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian) {
     let hypothesis: &SnapshotHypothesis = &pedestrian.hypotheses[pedestrian.representative()];
     let way = from_last(&pedestrian.observed, &hypothesis.positions);
     let way: Vec<Position> = way.copied().collect();
     drawing.path("forecast", &plan.path(&way));
-    let arrows = way.windows(2).step_by(ARROW_EVERY);
-    for pair in arrows.filter(|_| with_velocities) {
-        let seconds = ARROW_SECONDS / TIME_STEP;
-        let tip = [0, 1].map(|axis| pair[0][axis] + seconds * (pair[1][axis] - pair[0][axis]));
-        for stroke in arrow(plan.px(pair[0]), plan.px(tip)).into_iter().flatten() {
-            drawing.path("velocity", &stroke);
-        }
-    }
     if let Some(end) = way.last() {
         drawing.polygon("star", &star(plan.px(*end), 7.0));
     }

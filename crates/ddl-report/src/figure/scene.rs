@@ -52,7 +52,7 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, ReportError
             pedestrian::track(drawing, &axes.plan, observed, truth);
         }
         for pedestrian in drawn {
-            pedestrian::representative(drawing, &axes.plan, pedestrian, false);
+            pedestrian::representative(drawing, &axes.plan, pedestrian);
         }
     });
     Ok(drawing.to_file(PLOT_STYLE))

@@ -21,7 +21,7 @@ use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position};
 use serde::Serialize;
 
 use crate::error::ReportError;
-use crate::snapshot::{ForecastSnapshot, Highlight, SnapshotHypothesis, SnapshotPedestrian};
+use crate::snapshot::{ForecastSnapshot, SnapshotHypothesis, SnapshotPedestrian};
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
@@ -31,7 +31,6 @@ struct MomentData<'a> {
     recording: &'a str,
     frame: i64,
     frame_step: i64,
-    picks: &'a [Highlight],
     pedestrians: Vec<PedestrianData<'a>>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     joint: bool,
@@ -74,7 +73,6 @@ impl<'a> MomentData<'a> {
             recording: &moment.recording,
             frame: moment.frame,
             frame_step: moment.frame_step,
-            picks: &moment.picks,
             pedestrians: moment.pedestrians.iter().map(PedestrianData::of).collect(),
             joint: moment.joint,
             groups: &moment.groups,

@@ -1,6 +1,6 @@
 //! The HTML page of a report.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use crate::document::{ContentsEntry, identifier, inline, unused};
 use crate::error::ReportError;
@@ -8,11 +8,10 @@ use crate::figure::drawing::Drawing;
 use crate::page::headline_chart::{ChartShape, headline_chart};
 use crate::page::moment_check::{self, Truth};
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
-use crate::page::{gallery_section, headline, moment_data, standing};
+use crate::page::{headline, moment_data, standing};
 use crate::report::{Report, watching_figures};
 use crate::snapshot::ForecastSnapshot;
 
-const CASES_KEY: &str = include_str!("cases_key.html");
 /// The script of the rest of this page, run after those of the player.
 const REPORT_SCRIPT: &str = include_str!("script/report_file.js");
 
@@ -21,7 +20,7 @@ const REPORT_SCRIPT: &str = include_str!("script/report_file.js");
 pub struct Page<'a> {
     /// The results.
     pub report: &'a Report,
-    /// Moments for the player; those with [picks](ForecastSnapshot::picks) are also shown in the gallery.
+    /// Moments for the player.
     pub moments: &'a [ForecastSnapshot],
 }
 
@@ -40,12 +39,7 @@ impl<'a> Page<'a> {
         let moments = moment_data::to_json(self.moments)?;
         let report = self.report.to_json()?;
         let data: [(&str, &str); 2] = [("report-json", &report), ("moments-json", &moments)];
-        let links = [
-            ("results", "Results"),
-            ("player", "Player"),
-            ("cases", "Cases"),
-            ("tables", "Tables"),
-        ];
+        let links = [("results", "Results"), ("player", "Player"), ("tables", "Tables")];
         let body = html! {
             body {
                 a.skip href="#results" { "To the results" }
@@ -75,11 +69,6 @@ impl<'a> Page<'a> {
             }
             section.headline aria-label="The best result and its comparison" { (headline::headline(self.report)) }
             (player(self.moments))
-            section #cases {
-                h2 { "Cases" }
-                ul.key aria-label="Legend" { (PreEscaped(CASES_KEY)) }
-                (gallery_section::html(self.moments))
-            }
             section #tables {
                 h2 { "All tables" }
                 ol.contents {
@@ -102,7 +91,6 @@ impl<'a> Page<'a> {
         if let Some(standing) = standing::standing(self.report) {
             figures.push(("comparison".to_owned(), headline_chart(&standing, ChartShape::Wide)));
         }
-        figures.extend(gallery_section::figures(self.moments));
         let mut used: Vec<String> = Vec::new();
         let figures = figures
             .into_iter()

@@ -4,7 +4,7 @@ use ddl_core::Forecast;
 use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 use ddl_report::{
-    ForecastSnapshot, Highlight, HighlightKind, Report,
+    ForecastSnapshot, Report,
     page::{Page, Viewer},
 };
 use proptest::prelude::*;
@@ -39,15 +39,6 @@ fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (W
 fn moment(pedestrians: usize, hypotheses: usize, goals: bool) -> ForecastSnapshot {
     let (window, forecast) = window_and_forecast(pedestrians, hypotheses, goals);
     ForecastSnapshot::new("fold", "stand-in", &window, &forecast).unwrap()
-}
-
-fn pick(show: HighlightKind, pedestrians: Vec<usize>, rule: &str) -> Highlight {
-    let rule = rule.to_owned();
-    Highlight {
-        show,
-        pedestrians,
-        rule,
-    }
 }
 
 fn report() -> Report {
@@ -160,7 +151,6 @@ fn names_cannot_become_markup() {
     let mut bad = moment(2, 2, true);
     bad.recording = hostile.to_owned();
     bad.forecaster = hostile.to_owned();
-    bad.picks = vec![pick(HighlightKind::Turning, vec![1], hostile)];
     let report = report();
     let page = Page {
         report: &report,
@@ -182,41 +172,24 @@ fn names_cannot_become_markup() {
 
 #[test]
 fn figures_are_files_of_their_own() {
-    let mut picked = moment(3, 20, true);
-    let kinds = [HighlightKind::Group, HighlightKind::Group, HighlightKind::Turning];
-    picked.picks = kinds.map(|kind| pick(kind, vec![0, 1], "by hand")).to_vec();
     let report = report();
     let page = Page {
         report: &report,
-        moments: &[picked, moment(1, 1, false)],
+        moments: &[moment(3, 20, true), moment(1, 1, false)],
     };
     let figures = page.figures().unwrap();
     let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(
-        names,
-        [
-            "comparison.svg",
-            "case-walking-together-scene-70.svg",
-            "case-walking-together-scene-70-2.svg",
-            "case-turning-scene-70.svg"
-        ]
-    );
+    assert_eq!(names, ["comparison.svg"]);
     for (_, svg) in &figures {
         assert!(svg.starts_with("<?xml") && svg.contains("<title>"));
         assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("var("));
     }
-    let html = page.to_html().unwrap();
-    assert_eq!(html.matches("Play this moment</button>").count(), 3);
 }
 
 #[test]
 fn what_is_not_there_is_said() {
     let html = Page::new(&report()).to_html().unwrap();
-    for words in [
-        "<section id=\"player\" class=\"empty\">",
-        "No moments were recorded",
-        "No cases were picked",
-    ] {
+    for words in ["<section id=\"player\" class=\"empty\">", "No moments were recorded"] {
         assert!(html.contains(words), "{words}");
     }
 }
@@ -226,7 +199,7 @@ type Fault = (fn(&mut ForecastSnapshot), &'static str);
 #[test]
 fn what_is_not_whole_is_refused_by_name() {
     let report = report();
-    let cases: [Fault; 7] = [
+    let cases: [Fault; 6] = [
         (
             |m| m.pedestrians[1].truth.truncate(11),
             "pedestrian 1 has 11 positions in `truth`, not 12",
@@ -247,10 +220,6 @@ fn what_is_not_whole_is_refused_by_name() {
         (
             |m| m.pedestrians[1].hypotheses.clear(),
             "a pedestrian has no hypothesis",
-        ),
-        (
-            |m| m.picks = vec![pick(HighlightKind::Group, vec![0, 2], "")],
-            "the pick `walking together` names pedestrian 2 of 2, counted from 0",
         ),
     ];
     for (change, expected) in cases {

@@ -181,7 +181,7 @@ function makePlayer(moments) {
     showPedestrian();
   }
 
-  function chooseMoment(at, who = null) {
+  function chooseMoment(at, who = 0) {
     state.moment = (at + moments.length) % moments.length;
     const moment = current();
     const name = recordingName(moment);
@@ -189,9 +189,8 @@ function makePlayer(moments) {
     fillSelect(
       byId("choose-moment"),
       momentsOf(name).map((m) => {
-        const picks = moments[m].picks.map((pick) => pick.show.replace("-", " "));
         const people = moments[m].pedestrians.length;
-        return [m, [`frame ${moments[m].frame}`, `${people} ${people === 1 ? "pedestrian" : "pedestrians"}`, ...new Set(picks)].join(", ")];
+        return [m, [`frame ${moments[m].frame}`, `${people} ${people === 1 ? "pedestrian" : "pedestrians"}`].join(", ")];
       }),
       state.moment,
     );
@@ -201,8 +200,7 @@ function makePlayer(moments) {
       state.links = groupLinks(moment);
       showFuture();
     }
-    const picked = moment.picks[0]?.pedestrians[0] ?? 0;
-    choosePedestrian(who ?? picked);
+    choosePedestrian(who);
   }
 
   function setShow(name, on) {
@@ -232,15 +230,6 @@ function makePlayer(moments) {
     if (found !== undefined) choosePedestrian(found);
     stage.focus({ preventScroll: true });
   });
-  for (const button of document.querySelectorAll("button[data-moment]")) {
-    button.addEventListener("click", () => {
-      chooseMoment(Number(button.dataset.moment), Number(button.dataset.pedestrian));
-      byId("player").scrollIntoView();
-      stage.focus({ preventScroll: true });
-      clock.set(0);
-      clock.play(true);
-    });
-  }
   onThemeChange(() => {
     palette = readPalette();
     redraw();
