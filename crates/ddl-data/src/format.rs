@@ -30,6 +30,7 @@ use std::path::Path;
 
 pub use choice::ColumnChoice;
 pub use kind::Format;
+pub use numbering::Numbering;
 pub use stream::{Frame, FrameReader};
 pub use write::write_recording;
 
