@@ -3,7 +3,7 @@
 use crate::cdr::{Message, read};
 use crate::error::RosError;
 use crate::msg::{Detection3DArray, Header, People, Point, TrackedPersons};
-use ddl_core::{FRAME_LIMIT, PedestrianId, PedestrianName, PedestrianNames, Position};
+use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position, is_frame};
 use ddl_data::Numbering;
 use std::collections::BTreeMap;
 
@@ -24,7 +24,7 @@ impl Observed {
         let mut words = BTreeMap::new();
         let seen = self.pedestrians.iter().map(|SeenPedestrian { name, position, .. }| {
             let id = match PedestrianName::of_text(name) {
-                PedestrianName::Number(number) if number.abs() < FRAME_LIMIT => PedestrianId(number),
+                PedestrianName::Number(number) if is_frame(number) => PedestrianId(number),
                 _ => {
                     let (id, word) = numbering.number(name);
                     words.insert(id, word);
