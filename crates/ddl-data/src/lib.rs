@@ -105,7 +105,7 @@ pub use ddl_core::{
 pub use error::{DataError, FormatError, RecordingError};
 pub use fold::{Fold, TrainingSplit};
 pub use format::{
-    ColumnChoice, Format, Frame, FrameReader, Numbering, parse_columns, parse_recording, read_recording,
+    ColumnChoice, Format, Frame, FrameReader, Numbering, is_vehicle, parse_columns, parse_recording, read_recording,
     write_recording,
 };
 pub use future::Futures;
