@@ -101,17 +101,11 @@ impl TrackOptions {
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast, for a run.
     pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<ObservedTracks> {
-        let ReadRecording {
-            recording,
-            topic,
-            clock,
-            guessed,
-            notes,
-            ..
-        } = self.units.or_those_of(run).read(self.file())?;
-        for note in notes.into_iter().chain(guessed) {
+        let read = self.units.or_those_of(run).read(self.file())?;
+        for note in read.notes.iter().chain(&read.guessed) {
             tell(format_args!("note: {note}"));
         }
+        let ReadRecording { recording, clock, .. } = read;
         let mut tracks = self.windows_of(recording.live_tracks());
         if self.last && self.every.is_none() {
             // With clocks of their own, too, the last row is the last moment.
@@ -152,7 +146,7 @@ impl TrackOptions {
         never_forecast.retain(|pedestrian| !is_forecast.contains(pedestrian));
         Ok(ObservedTracks {
             recording,
-            topic,
+            topic: read.topic,
             windows,
             clock,
             warning,

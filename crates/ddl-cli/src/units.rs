@@ -107,6 +107,9 @@ impl Units {
 
     /// What the options say of the columns of text.
     pub(crate) fn choice(&self) -> anyhow::Result<ColumnChoice> {
+        if self.topic.is_some() {
+            bail!("only MCAP has topics; leave out --topic");
+        }
         let mut choice = self.columns.clone().unwrap_or_default();
         if self.homography()?.is_some() {
             choice = choice.mapped();
@@ -238,9 +241,6 @@ impl Units {
         if is_log(file) {
             let tracks = read_log(file, self.topic.as_deref(), self.classes()?)?;
             return Ok((tracks.recording, "mcap", Some(tracks.topic)));
-        }
-        if self.topic.is_some() {
-            bail!("{}: only MCAP has topics; leave out --topic", file.display());
         }
         if file.as_os_str() == "-" {
             bail!("only `ddl forecast -` reads standard input; give a file of tracks");

@@ -29,6 +29,7 @@ mod write;
 use std::path::Path;
 
 pub use choice::ColumnChoice;
+pub use field::escaped;
 pub use kind::Format;
 pub use numbering::Numbering;
 pub use row_filter::is_vehicle;

@@ -1,16 +1,14 @@
 //! Errors of this crate.
 
-use std::path::PathBuf;
+use ddl_data::escaped;
 
 /// A log cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum LogError {
-    #[error("cannot read {}: {source}", .path.display())]
-    Read { path: PathBuf, source: std::io::Error },
     #[error("{place}: {problem}")]
-    Content { place: String, problem: String },
+    Read { place: String, problem: String },
     #[error("cannot write MCAP: {0}")]
     Write(#[from] mcap::McapError),
     #[error(transparent)]
@@ -20,10 +18,11 @@ pub enum LogError {
 }
 
 impl LogError {
-    pub(crate) fn at(place: impl Into<String>, problem: impl Into<String>) -> Self {
-        Self::Content {
-            place: place.into(),
-            problem: problem.into(),
+    /// A way to say where a problem is.
+    pub(crate) fn at(place: impl ToString) -> impl FnOnce(String) -> Self {
+        move |problem| Self::Read {
+            place: escaped(&place.to_string()),
+            problem: escaped(&problem),
         }
     }
 }

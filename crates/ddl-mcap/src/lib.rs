@@ -2,7 +2,6 @@
 
 mod decode;
 mod error;
-mod fields;
 mod files;
 mod messages;
 mod tracks;

@@ -1,56 +1,25 @@
-//! The messages of a file, one after another, in bounded memory. The crate `mcap` has readers of messages too; they
-//! panic at an attachment that is too short, and unpack chunks with libraries in C.
+//! The messages of a file, one after another. Readers of messages in the crate `mcap` panic at a short attachment, and
+//! reserve memory for the length that a text is said to have; here no length is believed before its bytes are there.
 
-use crate::error::LogError;
-use crate::fields::Fields;
-use mcap::McapError;
-use mcap::records::op;
+use mcap::read::ChannelAccumulator;
+use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
-use std::collections::{BTreeMap, HashMap};
+use mcap::{McapError, Message, parse_record};
 use std::fs::File;
 use std::io::{ErrorKind, Read};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
 /// Most bytes of a record, and of an unpacked chunk.
 const MOST: usize = 256 << 20;
-/// Bytes that are read at once: a length is believed as far as bytes follow.
+/// Bytes that are read at once.
 const AT_ONCE: usize = 1 << 16;
-
-/// What all messages of a topic have in common.
-#[derive(Debug)]
-pub(crate) struct Channel {
-    pub(crate) topic: String,
-    pub(crate) encoding: String,
-    pub(crate) metadata: BTreeMap<String, String>,
-    pub(crate) schema: Option<Arc<Schema>>,
-}
-
-#[derive(Debug)]
-pub(crate) struct Schema {
-    pub(crate) name: String,
-    pub(crate) encoding: String,
-    pub(crate) data: Vec<u8>,
-}
-
-#[derive(Debug)]
-pub(crate) struct Message {
-    pub(crate) channel: Arc<Channel>,
-    pub(crate) sequence: u32,
-    /// Nanoseconds.
-    pub(crate) log_time: u64,
-    pub(crate) publish_time: u64,
-    pub(crate) data: Vec<u8>,
-}
-
-/// Whether messages of a channel are wanted, if the user names this topic.
-pub(crate) type Wanted = fn(&Channel, Option<&str>) -> bool;
+/// Bytes before the text of a chunk's compression.
+const CHUNK_HEAD: usize = 28;
 
 pub(crate) struct Messages {
-    path: PathBuf,
     source: File,
     reader: LinearReader,
-    channels: Channels,
+    channels: ChannelAccumulator<'static>,
     chunk: Vec<u8>,
     /// Number of bytes of the chunk that are taken.
     taken: usize,
@@ -59,215 +28,132 @@ pub(crate) struct Messages {
 }
 
 impl Messages {
-    pub(crate) fn open(path: &Path, wanted: Wanted, topic: Option<&str>) -> Result<Self, LogError> {
-        let source = File::open(path).map_err(|source| LogError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        let options = LinearReaderOptions::default()
-            .with_emit_chunks(true)
-            .with_record_length_limit(MOST);
+    pub(crate) fn open(path: &Path) -> Result<Self, String> {
+        let options = LinearReaderOptions::default().with_emit_chunks(true);
         Ok(Self {
-            path: path.to_owned(),
-            source,
-            reader: LinearReader::new_with_options(options),
-            channels: Channels {
-                schemas: HashMap::new(),
-                known: BTreeMap::new(),
-                wanted,
-                topic: topic.map(str::to_owned),
-                time: 0,
-            },
+            source: File::open(path).map_err(text)?,
+            reader: LinearReader::new_with_options(options.with_record_length_limit(MOST)),
+            channels: ChannelAccumulator::default(),
             chunk: Vec::new(),
             taken: 0,
             is_cut: false,
         })
     }
 
-    /// The channels so far, with the number of their messages.
-    pub(crate) fn channels(&self) -> impl Iterator<Item = (&Channel, u64)> {
-        self.channels
-            .known
-            .values()
-            .map(|(channel, count)| (&**channel, *count))
-    }
-
-    /// The log time of the last message so far, wanted or not, nanoseconds.
-    pub(crate) fn time(&self) -> u64 {
-        self.channels.time
-    }
-
-    /// The next wanted message; `None` at the end.
-    pub(crate) fn next(&mut self) -> Result<Option<Message>, LogError> {
+    /// The next message; `None` at the end.
+    pub(crate) fn next(&mut self) -> Result<Option<Message<'static>>, String> {
         loop {
-            match self.step() {
-                Ok(Step::On) => {}
-                Ok(Step::Message(message)) => return Ok(Some(message)),
-                Ok(Step::End) => return Ok(None),
-                Err(problem) => {
-                    let (file, time) = (self.path.display(), seconds(self.time()));
-                    return Err(LogError::at(format!("{file}, after {time} s"), problem));
-                }
-            }
-        }
-    }
-
-    fn step(&mut self) -> Result<Step, String> {
-        if self.taken < self.chunk.len() {
-            let mut rest = Fields(&self.chunk[self.taken..]);
-            let (opcode, data) = rest.record().ok_or("a record goes beyond the end of its chunk")?;
-            self.taken = self.chunk.len() - rest.0.len();
-            return self.channels.take(opcode, data);
-        }
-        match self.reader.next_event() {
-            None => Ok(Step::End),
-            Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
-                let buffer = self.reader.insert(wanted.min(AT_ONCE));
-                let read = loop {
-                    match self.source.read(buffer) {
-                        Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                        read => break read.map_err(|error| error.to_string())?,
+            let mut message = None;
+            if let Some((head, rest)) = self.chunk[self.taken..].split_first_chunk::<9>() {
+                let [opcode, length @ ..] = *head;
+                let data = rest.get(..u64::from_le_bytes(length) as usize);
+                let data = data.ok_or("a record goes beyond the end of its chunk")?;
+                self.taken += head.len() + data.len();
+                message = message_of(&mut self.channels, opcode, data)?;
+            } else {
+                match self.reader.next_event() {
+                    None
+                    | Some(Ok(LinearReadEvent::Record {
+                        opcode: op::DATA_END, ..
+                    })) => return Ok(None),
+                    Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
+                        let buffer = self.reader.insert(wanted.min(AT_ONCE));
+                        match self.source.read(buffer) {
+                            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                            read => self.reader.notify_read(read.map_err(text)?),
+                        }
                     }
-                };
-                self.reader.notify_read(read);
-                Ok(Step::On)
-            }
-            Some(Ok(LinearReadEvent::Record { opcode, data })) => match opcode {
-                op::DATA_END => Ok(Step::End),
-                op::CHUNK => {
-                    (self.chunk, self.taken) = (unpacked(data)?, 0);
-                    Ok(Step::On)
+                    Some(Ok(LinearReadEvent::Record {
+                        opcode: op::CHUNK,
+                        data,
+                    })) => {
+                        (self.chunk, self.taken) = (unpacked(data)?, 0);
+                    }
+                    Some(Ok(LinearReadEvent::Record { opcode, data })) => {
+                        message = message_of(&mut self.channels, opcode, data)?;
+                    }
+                    Some(Err(McapError::UnexpectedEof)) => {
+                        self.is_cut = true;
+                        return Ok(None);
+                    }
+                    Some(Err(McapError::BadMagic)) => return Err("the file is not MCAP".to_owned()),
+                    Some(Err(error)) => return Err(error.to_string()),
                 }
-                _ => self.channels.take(opcode, data),
-            },
-            Some(Err(McapError::UnexpectedEof)) => {
-                self.is_cut = true;
-                Ok(Step::End)
             }
-            Some(Err(McapError::BadMagic)) => Err("the file is not MCAP".to_owned()),
-            Some(Err(error)) => Err(error.to_string()),
+            if message.is_some() {
+                return Ok(message);
+            }
         }
     }
 }
 
-enum Step {
-    On,
-    Message(Message),
-    End,
-}
-
-/// The channels so far, with the number of their messages.
-struct Channels {
-    schemas: HashMap<u16, Arc<Schema>>,
-    known: BTreeMap<u16, (Arc<Channel>, u64)>,
-    wanted: Wanted,
-    topic: Option<String>,
-    time: u64,
-}
-
-impl Channels {
-    /// Takes a record.
-    fn take(&mut self, opcode: u8, data: &[u8]) -> Result<Step, String> {
-        let mut fields = Fields(data);
-        let short = |what: &str| format!("a record of a {what} ends early, or its text is not UTF-8");
-        match opcode {
-            op::SCHEMA => {
-                let (id, schema) = fields.schema().ok_or_else(|| short("schema"))?;
-                self.schemas.insert(id, schema.into());
-            }
-            op::CHANNEL => {
-                let (id, channel) = fields.channel(&self.schemas).ok_or_else(|| short("channel"))?;
-                self.known.entry(id).or_insert((channel.into(), 0));
-            }
-            op::MESSAGE => {
-                let (id, head) = fields.message_head().ok_or_else(|| short("message"))?;
-                let known = self.known.get_mut(&id);
-                let (channel, count) = known.ok_or_else(|| format!("a message of channel {id}, which is unknown"))?;
-                let (sequence, log_time, publish_time) = head;
-                *count += 1;
-                self.time = log_time;
-                if (self.wanted)(channel, self.topic.as_deref()) {
-                    return Ok(Step::Message(Message {
-                        channel: Arc::clone(channel),
-                        sequence,
-                        log_time,
-                        publish_time,
-                        data: fields.0.to_owned(),
-                    }));
-                }
-            }
-            _ => {}
+/// Takes a record: a message or, for later, a channel or schema.
+fn message_of(
+    channels: &mut ChannelAccumulator<'static>,
+    opcode: u8,
+    data: &[u8],
+) -> Result<Option<Message<'static>>, String> {
+    let fits = match opcode {
+        op::SCHEMA => counted(data, 2, 3).is_some(),
+        op::CHANNEL => counted(data, 4, 3).is_some_and(|parts| counted(parts[2], 0, usize::MAX).is_some()),
+        op::MESSAGE => true,
+        _ => return Ok(None),
+    };
+    if !fits {
+        return Err("a record is shorter than it says".to_owned());
+    }
+    match parse_record(opcode, data).map_err(text)? {
+        Record::Schema { header, data } => channels.add_schema_from_slice(header, &data).map_err(text)?,
+        Record::Channel(channel) => channels.add_channel(channel).map_err(text)?,
+        Record::Message { header, data } => {
+            let channel = channels.get(header.channel_id).ok_or("a message of no known channel")?;
+            return Ok(Some(Message {
+                channel,
+                sequence: header.sequence,
+                log_time: header.log_time,
+                publish_time: header.publish_time,
+                data: data.into_owned().into(),
+            }));
         }
-        Ok(Step::On)
+        _ => {}
     }
+    Ok(None)
 }
 
-impl<'a> Fields<'a> {
-    fn record(&mut self) -> Option<(u8, &'a [u8])> {
-        let (opcode, length) = (self.u8()?, self.u64()?);
-        Some((opcode, self.bytes(length)?))
+/// Up to `most` parts from byte `start` on, each behind its length; `None` if one is shorter than its length.
+fn counted(data: &[u8], start: usize, most: usize) -> Option<Vec<&[u8]>> {
+    let (mut rest, mut parts) = (data.get(start..)?, Vec::new());
+    while parts.len() < most && !(rest.is_empty() && most == usize::MAX) {
+        let (length, tail) = rest.split_first_chunk()?;
+        let part;
+        (part, rest) = tail.split_at_checked(u32::from_le_bytes(*length) as usize)?;
+        parts.push(part);
     }
-
-    fn schema(&mut self) -> Option<(u16, Schema)> {
-        let schema = |name, encoding, data: &[u8]| Schema {
-            name,
-            encoding,
-            data: data.to_owned(),
-        };
-        Some((self.u16()?, schema(self.text()?, self.text()?, self.counted()?)))
-    }
-
-    fn channel(&mut self, schemas: &HashMap<u16, Arc<Schema>>) -> Option<(u16, Channel)> {
-        let (id, schema) = (self.u16()?, self.u16()?);
-        let channel = Channel {
-            topic: self.text()?,
-            encoding: self.text()?,
-            metadata: self.texts()?,
-            schema: schemas.get(&schema).cloned(),
-        };
-        Some((id, channel))
-    }
-
-    /// The channel; the sequence, the log time and the time of publication.
-    fn message_head(&mut self) -> Option<(u16, (u32, u64, u64))> {
-        Some((self.u16()?, (self.u32()?, self.u64()?, self.u64()?)))
-    }
+    Some(parts)
 }
 
 /// The records of a chunk.
 fn unpacked(chunk: &[u8]) -> Result<Vec<u8>, String> {
-    let (size, checksum, compression, packed) = chunk_fields(chunk).ok_or("a chunk ends early")?;
-    let of_decoder = |error: &dyn std::fmt::Display| format!("a chunk of {compression} is damaged: {error}");
-    let mut records = Vec::new();
-    let read = match compression.as_str() {
-        "" => Box::new(packed) as Box<dyn Read>,
-        "zstd" => Box::new(ruzstd::decoding::StreamingDecoder::new(packed).map_err(|error| of_decoder(&error))?),
-        "lz4" => Box::new(lz4_flex::frame::FrameDecoder::new(packed)),
-        _ => return Err(format!("chunks of compression {compression:?}; zstd and lz4 are read")),
+    let parsed = counted(chunk, CHUNK_HEAD, 1).and_then(|_| parse_record(op::CHUNK, chunk).ok());
+    let Some(Record::Chunk { header, data }) = parsed else {
+        return Err("a chunk is shorter than it says".to_owned());
     };
-    // One byte more shows that there are more.
-    read.take(MOST as u64 + 1)
-        .read_to_end(&mut records)
-        .map_err(|error| of_decoder(&error))?;
-    if records.len() as u64 != size || records.len() > MOST {
-        return Err(format!("a chunk of {} bytes, stated are {size}", records.len()));
-    }
-    if checksum != 0 && crc32fast::hash(&records) != checksum {
-        return Err("a chunk is damaged: its checksum is wrong".to_owned());
+    let packed: Box<dyn Read> = match header.compression.as_str() {
+        "" => Box::new(&*data),
+        "zstd" => Box::new(ruzstd::decoding::StreamingDecoder::new(&*data).map_err(text)?),
+        "lz4" => Box::new(lz4_flex::frame::FrameDecoder::new(&*data)),
+        other => return Err(format!("chunks are compressed by {other:?}; zstd and lz4 are read")),
+    };
+    let mut records = Vec::new();
+    let read = packed.take(MOST as u64).read_to_end(&mut records);
+    read.map_err(|error| format!("a chunk is damaged: {error}"))?;
+    let crc = header.uncompressed_crc;
+    if records.len() as u64 != header.uncompressed_size || (crc != 0 && crc32fast::hash(&records) != crc) {
+        return Err(format!("a chunk is damaged, or larger than {MOST} bytes"));
     }
     Ok(records)
 }
 
-/// Size and checksum of the records, their compression, and their packed bytes.
-fn chunk_fields(chunk: &[u8]) -> Option<(u64, u32, String, &[u8])> {
-    let mut fields = Fields(chunk);
-    let _times = (fields.u64()?, fields.u64()?);
-    let (size, checksum, compression) = (fields.u64()?, fields.u32()?, fields.text()?);
-    let length = fields.u64()?;
-    Some((size, checksum, compression, fields.bytes(length)?))
-}
-
-/// Nanoseconds in words.
-pub(crate) fn seconds(nanoseconds: u64) -> String {
-    format!("{}.{:06}", nanoseconds / 1_000_000_000, nanoseconds / 1000 % 1_000_000)
+fn text(error: impl std::fmt::Display) -> String {
+    error.to_string()
 }

@@ -1,17 +1,20 @@
 //! The tracks of a topic, as a recording.
 
-use crate::decode::{Decoded, READ, decode, may_hold_tracks, type_name};
+use crate::decode::{Decoded, READ, decode, type_name};
 use crate::error::LogError;
 use crate::files::files;
-use crate::messages::{Channel, Message, Messages, seconds};
+use crate::messages::Messages;
 use ddl_core::{FRAME_LIMIT, PedestrianId};
-use ddl_data::{COORDINATE_LIMIT, Numbering, Observation, Recording, RecordingError, TimeUnit};
-use std::collections::{BTreeMap, BTreeSet};
+use ddl_data::{COORDINATE_LIMIT, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped};
+use mcap::Channel;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Topics that an error lists.
 const MOST_LISTED: usize = 20;
+/// Bytes of a pedestrian's name.
+const LONGEST_NAME: usize = 256;
 
 /// The tracks of a log.
 #[derive(Debug)]
@@ -27,73 +30,79 @@ pub struct LoggedTracks {
 pub struct TrackTopic {
     pub(crate) files: Vec<PathBuf>,
     pub(crate) name: String,
-    /// The coordinate frame of its positions; may be empty.
-    pub(crate) frame_id: String,
 }
 
-/// Reads the tracks of an MCAP file, or of the folder of a rosbag2 recording: those of `topic` or, without it, of the
-/// one topic that holds tracks. `keep` chooses the classes that are pedestrians.
+/// Reads the tracks of an MCAP file, or of the folder of a rosbag2 recording: those of the topic that is `asked` for or,
+/// without it, of the one topic that holds tracks. `keep` chooses the classes that are pedestrians.
 ///
 /// Messages have the time of their header, or that of the log where they have none. Of a file whose end is missing,
 /// the whole chunks are read.
 ///
 /// # Errors
-/// If files cannot be read; if a message of the topic, or what leads to it, is damaged or of an unknown kind; if no
-/// topic or several hold tracks.
-pub fn read_log(path: &Path, topic: Option<&str>, keep: impl Fn(&str) -> bool) -> Result<LoggedTracks, LogError> {
-    let files = files(path)?;
-    let mut topics: BTreeMap<String, Topic> = BTreeMap::new();
-    let mut notes = Vec::new();
+/// A file cannot be read; a message of the topic, or what leads to it, is damaged or of an unknown kind; no topic or
+/// several hold tracks.
+pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -> Result<LoggedTracks, LogError> {
+    let (files, mut topics, mut notes) = (files(path)?, BTreeMap::<String, Topic>::new(), Vec::new());
     for file in &files {
-        let mut messages = Messages::open(file, is_wanted, topic)?;
-        while let Some(message) = messages.next()? {
-            let place = place(file, &message);
-            let decoded = decode(&message).map_err(|problem| LogError::at(&place, problem))?;
-            if let Some(decoded) = decoded {
-                let topic = topics.entry(message.channel.topic.clone()).or_default();
-                topic
-                    .tracks
-                    .add(decoded, &keep)
-                    .map_err(|problem| LogError::at(&place, problem))?;
+        let (file_name, mut time) = (file.display(), 0.0);
+        let mut messages = Messages::open(file).map_err(LogError::at(&file_name))?;
+        while let Some(message) = messages.next().map_err(|problem| {
+            let place = format!("{file_name}, after {time:.6} s");
+            LogError::at(place)(problem)
+        })? {
+            time = message.log_time as f64 / 1e9;
+            let channel = &message.channel;
+            let topic = topics
+                .entry(channel.topic.clone())
+                .or_insert_with(|| Topic::of(channel));
+            topic.messages += 1;
+            if asked.is_none_or(|asked| asked == channel.topic) {
+                let decoded = decode(&message);
+                let added = decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep));
+                added.map_err(|problem| {
+                    let (topic, number) = (&channel.topic, message.sequence);
+                    LogError::at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))(problem)
+                })?;
             }
-        }
-        for (channel, count) in messages.channels() {
-            topics.entry(channel.topic.clone()).or_default().tell(channel, count);
         }
         if messages.is_cut {
             notes.push(format!(
-                "{} is cut off: read is what is whole, until {} s of its log",
-                file.display(),
-                seconds(messages.time())
+                "{file_name} is cut off: what is whole was read, until {time:.6} s"
             ));
         }
     }
-    let origin = path.display().to_string();
-    let (name, chosen) = choose(topics, topic).map_err(|problem| LogError::at(&origin, problem))?;
-    notes.insert(0, chosen.words(&name));
-    notes.extend(chosen.tracks.left_out());
-    let frame_id = chosen.tracks.frame_id.clone().unwrap_or_default();
-    let recording = chosen.tracks.recording(&origin);
-    let recording = recording.map_err(|problem| LogError::at(format!("{origin}, topic {name}"), problem))?;
+    let (name, topic) = choose(topics, asked).map_err(LogError::at(path.display()))?;
+    notes.insert(0, topic.words(&name));
+    let recording = topic
+        .recording()
+        .map_err(LogError::at(format!("{}, topic {name}", path.display())))?;
     Ok(LoggedTracks {
-        recording: recording.with_notes(notes),
-        topic: TrackTopic { files, name, frame_id },
+        recording: recording.with_notes(notes.iter().map(|note| escaped(note)).collect()),
+        topic: TrackTopic { files, name },
     })
 }
 
-fn is_wanted(channel: &Channel, topic: Option<&str>) -> bool {
-    may_hold_tracks(channel) && topic.is_none_or(|topic| topic == channel.topic)
-}
-
-pub(crate) fn place(file: &Path, message: &Message) -> String {
-    let Message {
-        channel,
-        sequence,
-        log_time,
-        ..
-    } = message;
-    let (file, topic, time) = (file.display(), &channel.topic, seconds(*log_time));
-    format!("{file}, topic {topic}, message {sequence} at {time} s")
+/// The topic that was asked for, or the one with tracks.
+fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(String, Topic), String> {
+    let listed = |wanted: fn(&Topic) -> bool| {
+        let some = topics.iter().filter(|(_, topic)| wanted(topic)).take(MOST_LISTED);
+        let some = some.map(|(name, topic)| format!("{name} ({}, {} messages)", topic.kind, topic.messages));
+        some.collect::<Vec<_>>().join(", ")
+    };
+    let holds_tracks = |topic: &Topic| topic.is_logged.is_some();
+    let mut found = topics
+        .iter()
+        .filter(|(_, topic)| holds_tracks(topic))
+        .map(|(name, _)| name.clone());
+    match (asked, found.next(), found.next()) {
+        (_, Some(name), None) => Ok(topics.remove_entry(&name).unwrap_or_default()),
+        (None, Some(_), _) => Err(format!("choose a topic by --topic: {}", listed(holds_tracks))),
+        (None, None, _) => Err(format!("no tracks in {}; read is {READ}", listed(|_| true))),
+        (Some(asked), ..) => Err(match topics.get(asked) {
+            Some(topic) => format!("topic {asked} holds no tracks but {}; read is {READ}", topic.kind),
+            None => format!("no message of topic {asked}; there are {}", listed(|_| true)),
+        }),
+    }
 }
 
 /// What is known of a topic.
@@ -101,152 +110,95 @@ pub(crate) fn place(file: &Path, message: &Message) -> String {
 struct Topic {
     kind: String,
     messages: u64,
-    tracks: Tracks,
-}
-
-impl Topic {
-    fn tell(&mut self, channel: &Channel, count: u64) {
-        self.kind = match (&*type_name(channel), &channel.encoding) {
-            ("", encoding) => encoding.clone(),
-            (kind, encoding) => format!("{kind} as {encoding}"),
-        };
-        self.messages += count;
-    }
-
-    fn words(&self, name: &str) -> String {
-        let of = match &self.tracks.frame_id {
-            Some(frame) if !frame.is_empty() => format!(", positions in the frame {frame}"),
-            _ => String::new(),
-        };
-        let times = if self.tracks.is_logged == Some(true) {
-            "those of the log, as the messages have none"
-        } else {
-            "those of the messages"
-        };
-        format!(
-            "topic {name} ({}, {} messages) is read{of}; times are {times}",
-            self.kind, self.messages
-        )
-    }
-}
-
-/// The topic that was asked for, or the one with tracks.
-fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(String, Topic), String> {
-    let listed = |some: Vec<(&String, &Topic)>| {
-        let more = some.len().saturating_sub(MOST_LISTED);
-        let some = some.iter().take(MOST_LISTED);
-        let words = some.map(|(name, topic)| format!("{name} ({}, {} messages)", topic.kind, topic.messages));
-        let more = (more > 0).then(|| format!("{more} more"));
-        words.chain(more).collect::<Vec<_>>().join(", ")
-    };
-    let all = || listed(topics.iter().collect());
-    let found: Vec<(&String, &Topic)> = topics
-        .iter()
-        .filter(|(_, topic)| topic.tracks.is_logged.is_some())
-        .collect();
-    let name = match (asked, &found[..]) {
-        (_, [(name, _)]) => (*name).clone(),
-        (_, []) if topics.is_empty() => return Err("the file holds no topic".to_owned()),
-        (Some(asked), _) => match topics.get(asked) {
-            Some(topic) => {
-                return Err(format!(
-                    "topic {asked} holds no tracks but {}; read is {READ}",
-                    topic.kind
-                ));
-            }
-            None => return Err(format!("there is no topic {asked} among {}", all())),
-        },
-        (None, []) => return Err(format!("no topic holds tracks among {}; read is {READ}", all())),
-        (None, _) => {
-            return Err(format!(
-                "several topics hold tracks; choose one with --topic: {}",
-                listed(found)
-            ));
-        }
-    };
-    let topic = topics.remove(&name).unwrap_or_default();
-    Ok((name, topic))
-}
-
-/// The rows of a topic so far.
-#[derive(Debug, Default)]
-struct Tracks {
     rows: Vec<Observation>,
     numbering: Option<Numbering>,
     words: BTreeMap<PedestrianId, Arc<str>>,
     frame_id: Option<String>,
-    /// Whether the times are those of the log; `None` before the first message.
+    /// Whether the times are those of the log; `None` without tracks.
     is_logged: Option<bool>,
-    occluded: usize,
-    /// Rows of other classes.
-    others: BTreeMap<String, usize>,
+    left_out: BTreeMap<String, usize>,
 }
 
-impl Tracks {
-    fn add(&mut self, decoded: Decoded, keep: impl Fn(&str) -> bool) -> Result<(), String> {
-        let Decoded {
-            microseconds,
-            is_logged,
-            mut observed,
-        } = decoded;
-        if *self.is_logged.get_or_insert(is_logged) != is_logged {
+impl Topic {
+    fn of(channel: &Channel<'_>) -> Self {
+        Self {
+            kind: format!("{} as {}", type_name(channel), channel.message_encoding),
+            ..Self::default()
+        }
+    }
+
+    fn words(&self, name: &str) -> String {
+        let (kind, messages, frame_id) = (&self.kind, self.messages, self.frame_id.as_deref().unwrap_or_default());
+        let logged = if self.is_logged == Some(true) {
+            "of the log"
+        } else {
+            "of the messages"
+        };
+        let left_out = self
+            .left_out
+            .iter()
+            .map(|(what, count)| format!("; {count} rows left out: {what}"));
+        let left_out: String = left_out.collect();
+        format!(
+            "topic {name} ({kind}, {messages} messages): times {logged}, positions in the frame {frame_id:?}{left_out}"
+        )
+    }
+
+    /// Adds the rows of a message.
+    fn add(&mut self, decoded: Option<Decoded>, log_time: u64, keep: impl Fn(&str) -> bool) -> Result<(), String> {
+        let Some((time, mut observed)) = decoded else {
+            return Ok(());
+        };
+        if *self.is_logged.get_or_insert(time.is_none()) != time.is_none() {
             return Err("header.stamp is 0 in some messages and a time in others".to_owned());
         }
         let frame_id = self.frame_id.get_or_insert_with(|| observed.header.frame_id.clone());
         if *frame_id != observed.header.frame_id {
             let other = &observed.header.frame_id;
             return Err(format!(
-                "positions in the frame {other:?}, but before in {frame_id:?}; record them in one frame"
+                "positions in the frame {other:?}, but before in {frame_id:?}; record them in one"
             ));
         }
-        self.occluded += observed.occluded;
-        observed.pedestrians.retain(|seen| {
+        if observed.occluded > 0 {
+            *self.left_out.entry("occluded".to_owned()).or_default() += observed.occluded;
+        }
+        observed.pedestrians.retain_mut(|seen| {
+            seen.name = escaped(&seen.name);
             let is_kept = keep(&seen.class);
             if !is_kept {
-                *self.others.entry(seen.class.clone()).or_default() += 1;
+                *self.left_out.entry(format!("class {}", seen.class)).or_default() += 1;
             }
             is_kept
         });
-        let numbering = self.numbering.get_or_insert_with(|| Numbering::remembering(usize::MAX));
-        let (seen, names) = observed.numbered(numbering);
-        let mut present = BTreeSet::new();
+        let (seen, names) = observed.numbered(self.numbering.get_or_insert_with(|| Numbering::remembering(usize::MAX)));
         for (id, position) in seen {
-            if !present.insert(id) {
-                return Err(format!("pedestrian {} is in the message twice", names.of(id)));
-            }
-            if position.iter().any(|c| c.abs() > COORDINATE_LIMIT) {
-                return Err(format!("pedestrian {} is at {position:?}, beyond 1e7 m", names.of(id)));
+            let name = names.of(id).to_string();
+            if name.len() > LONGEST_NAME || position.iter().any(|c| c.abs() > COORDINATE_LIMIT) {
+                return Err(format!("pedestrian {name} at {position:?}: beyond 256 bytes or 1e7 m"));
             }
             if id.0 >= FRAME_LIMIT {
-                self.words.entry(id).or_insert_with(|| names.of(id).to_string().into());
+                self.words.entry(id).or_insert_with(|| name.into());
             }
-            self.rows.push(Observation::new(microseconds, id, position));
+            self.rows
+                .push(Observation::new(time.unwrap_or((log_time / 1000) as i64), id, position));
         }
         Ok(())
     }
 
-    fn left_out(&self) -> Option<String> {
-        let others = self
-            .others
-            .iter()
-            .map(|(class, count)| format!("{count} of class {class}"));
-        let occluded = (self.occluded > 0).then(|| format!("{} that are occluded", self.occluded));
-        let all: Vec<String> = others.chain(occluded).collect();
-        (!all.is_empty()).then(|| format!("rows left out: {}", all.join(", ")))
-    }
-
-    fn recording(self, origin: &str) -> Result<Recording, String> {
-        let words = self.words;
-        let recording = Recording::in_usual_step(origin, self.rows).map_err(|error| match error {
+    fn recording(self) -> Result<Recording, String> {
+        let recording = Recording::in_usual_step("log", self.rows).map_err(|error| match error {
             RecordingError::Duplicate { pedestrian, frame } => {
-                let name = words
+                let name = self
+                    .words
                     .get(&pedestrian)
                     .map_or_else(|| pedestrian.to_string(), ToString::to_string);
                 let time = frame as f64 / 1e6;
-                format!("pedestrian {name} is at two places at the time {time} s; the times must differ")
+                format!("pedestrian {name} is there twice at {time:.6} s; record one tracker to a topic")
             }
             other => other.to_string(),
         });
-        Ok(recording?.with_words(words).with_time_unit(Some(TimeUnit::Seconds)))
+        Ok(recording?
+            .with_words(self.words)
+            .with_time_unit(Some(TimeUnit::Seconds)))
     }
 }
