@@ -11,11 +11,13 @@ const PAUSE: Duration = Duration::from_secs(1);
 const STALE: Duration = Duration::from_secs(2);
 /// Latencies that the quantiles are of.
 const KEPT: usize = 1000;
-/// Kinds of faults that are told; the others only count.
+/// Faults that are told; the others only count.
 const MOST_TOLD: usize = 100;
 
-/// `diagnostic_msgs/DiagnosticStatus`
-const LEVELS: [u8; 3] = [0, 1, 3];
+/// Levels of `diagnostic_msgs/DiagnosticStatus`.
+const OK: u8 = 0;
+const WARNING: u8 = 1;
+const IS_STALE: u8 = 3;
 
 #[derive(Debug, Default)]
 pub(crate) struct Health {
@@ -50,15 +52,16 @@ impl Health {
     }
 
     /// Counts a frame that has no forecast because of a fault.
-    pub(crate) fn dropped(&mut self, kind: &str, error: &anyhow::Error) {
+    pub(crate) fn dropped(&mut self, error: &anyhow::Error) {
         self.dropped += 1;
-        self.fault(kind, error);
+        self.fault(error);
     }
 
-    /// Tells a fault, if it is the first of its kind.
-    pub(crate) fn fault(&mut self, kind: &str, error: &anyhow::Error) {
+    /// Tells a fault, unless one was told that differs in numbers alone.
+    pub(crate) fn fault(&mut self, error: &anyhow::Error) {
         self.last_error = format!("{error:#}");
-        if self.told.len() < MOST_TOLD && self.told.insert(kind.to_owned()) {
+        let kind = self.last_error.replace(|letter: char| letter.is_ascii_digit(), "");
+        if self.told.len() < MOST_TOLD && self.told.insert(kind) {
             tell(&format!("warning: {error:#} (told once; /diagnostics counts)"));
         }
     }
@@ -72,11 +75,10 @@ impl Health {
         };
         self.reported = Some((Instant::now(), self.dropped));
         let is_stale = self.heard.is_none_or(|heard| heard.elapsed() > STALE);
-        let [ok, warning, stale] = LEVELS;
         let (level, message) = match (is_stale, self.dropped - dropped_before) {
-            (true, _) => (stale, "no tracks".to_owned()),
-            (false, 0) => (ok, "forecasting".to_owned()),
-            (false, dropped) => (warning, format!("{dropped} frames dropped: {}", self.last_error)),
+            (true, _) => (IS_STALE, "no tracks".to_owned()),
+            (false, 0) => (OK, "forecasting".to_owned()),
+            (false, dropped) => (WARNING, format!("{dropped} frames dropped: {}", self.last_error)),
         };
         let mut sorted: Vec<f64> = self.latencies.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);

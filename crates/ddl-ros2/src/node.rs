@@ -39,7 +39,8 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
         options,
         place: Place::open(options)?,
         transforms: Transforms::new(&options.frame, options.transform, options.transform_age),
-        area: options.fixed_area()?,
+        fixed_area: options.fixed_area()?,
+        last_area: None,
         health: Health::default(),
         last: None,
     };
@@ -74,82 +75,63 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
             _ => {}
         }
         for (subscription, is_static) in [(&resting, true), (&moving, false)] {
-            while let Some(message) = forecasting.take(subscription) {
-                forecasting.learn(message.map(|(message, _)| message), is_static);
+            while let Some(message) = take(subscription) {
+                let added = message.and_then(|(message, _)| forecasting.transforms.add(message, is_static));
+                added.unwrap_or_else(|error| forecasting.health.fault(&error));
             }
         }
-        while let Some(message) = forecasting.take(&tracks) {
+        while let Some(message) = take(&tracks) {
             forecasting.health.hear();
             let answered = message.and_then(|(message, info)| forecasting.answer(message, &info, &outputs));
-            if let Err(Fault(kind, error)) = answered {
-                forecasting.health.dropped(&kind, &error);
-            }
+            answered.unwrap_or_else(|error| forecasting.health.dropped(&error));
         }
-        forecasting.report(&outputs);
+        if let Some(report) = forecasting.health.report(&options.name) {
+            publish(&outputs.diagnostics, report).unwrap_or_else(|error| forecasting.health.fault(&error));
+        }
     }
     forecasting.place.close()
 }
 
-/// What is wrong, and what kind of fault it is.
-struct Fault(String, anyhow::Error);
+/// The next message that has arrived.
+fn take<M: Message + 'static>(from: &Subscription<M>) -> Option<anyhow::Result<(M, MessageInfo)>> {
+    let malformed = |error| anyhow!("a message {} is malformed: {error}", M::TYPE);
+    from.take().map_err(malformed).transpose()
+}
 
 struct Forecasting<'a> {
     options: &'a Options,
     place: Place,
     transforms: Transforms,
-    area: Option<Area>,
+    /// The area of all grids; without it, that of the last ones.
+    fixed_area: Option<Area>,
+    last_area: Option<Area>,
     health: Health,
     /// The publisher and number of the last message with tracks.
     last: Option<(Gid, i64)>,
 }
 
 impl Forecasting<'_> {
-    /// The next message that has arrived.
-    fn take<M: Message + 'static>(&self, from: &Subscription<M>) -> Option<Result<(M, MessageInfo), Fault>> {
-        let wrong = |error| {
-            Fault(
-                M::TYPE.to_owned(),
-                anyhow!("a message {} is malformed: {error}", M::TYPE),
-            )
-        };
-        from.take().map_err(wrong).transpose()
-    }
-
-    fn learn(&mut self, message: Result<TfMessage, Fault>, is_static: bool) {
-        let of_kind = |error| Fault("transforms".to_owned(), error);
-        let added = message.and_then(|message| self.transforms.add(message, is_static).map_err(of_kind));
-        if let Err(Fault(kind, error)) = added {
-            self.health.fault(&kind, &error);
-        }
-    }
-
-    fn answer<T: Tracks>(&mut self, message: T, info: &MessageInfo, outputs: &Outputs) -> Result<(), Fault> {
+    fn answer<T: Tracks>(&mut self, message: T, info: &MessageInfo, outputs: &Outputs) -> anyhow::Result<()> {
         let (publisher, number) = (info.publisher_gid(), info.sequence_number());
         if let Some((last_publisher, last)) = self.last.replace((publisher, number))
             && last_publisher == publisher
         {
             self.health.lost += (number - last - 1).max(0) as u64;
         }
-        let mut observed = message
-            .observed()
-            .map_err(|error| Fault("tracks".to_owned(), error.into()))?;
+        let mut observed = message.observed()?;
         self.health.occluded += observed.occluded as u64;
         if let Some(class) = &self.options.class {
             observed.pedestrians.retain(|seen| seen.class == *class);
         }
-        let from = observed.header.frame_id.clone();
-        self.to_fixed(&mut observed)
-            .map_err(|error| Fault(format!("frame {from}"), error))?;
-        let now = self
-            .place
-            .forecast(&observed)
-            .map_err(|error| Fault("order".to_owned(), error))?;
+        self.to_fixed(&mut observed)?;
+        let now = self.place.forecast(&observed)?;
         self.health.doubtful += self.place.doubtful() as u64;
-        if let Some(now) = now {
-            self.publish(&now, &observed.header, info, outputs)
-                .map_err(|error| Fault("publish".to_owned(), error))?;
+        match now {
+            Some(now) => self.publish(&now, &observed.header, info, outputs)?,
+            None if self.place.is_moment() => self.publish_nobody(observed.header, outputs)?,
+            None => {}
         }
-        self.place.save().map_err(|error| Fault("memory".to_owned(), error))
+        self.place.save()
     }
 
     fn to_fixed(&self, observed: &mut Observed) -> anyhow::Result<()> {
@@ -189,10 +171,8 @@ impl Forecasting<'_> {
             return Ok(());
         }
         let futures = Futures::new(&now.window, now.forecast.clone())?;
-        let area = match self.area {
-            Some(area) => area,
-            None => futures.area(MARGIN, self.options.cell)?,
-        };
+        let around = || futures.area(MARGIN, self.options.cell);
+        let area = *self.last_area.insert(self.fixed_area.map_or_else(around, Ok)?);
         let grids = futures.occupancy(&area, &self.options.grids, Occupancy::BODY)?;
         for (grid, output) in grids.zip(&outputs.grids) {
             publish(output, occupancy_grid(&grid, header))?;
@@ -200,12 +180,29 @@ impl Forecasting<'_> {
         Ok(())
     }
 
-    fn report(&mut self, outputs: &Outputs) {
-        if let Some(report) = self.health.report(&self.options.name)
-            && let Err(error) = publish(&outputs.diagnostics, report)
-        {
-            self.health.fault("diagnostics", &error);
+    /// That nobody is there must be known too, or a costmap keeps those who left.
+    fn publish_nobody(&mut self, header: Header, outputs: &Outputs) -> anyhow::Result<()> {
+        if let Some(area) = self.fixed_area.or(self.last_area) {
+            let [width, height] = area.size();
+            for (&time, output) in self.options.grids.iter().zip(&outputs.grids) {
+                let probabilities = vec![0.0; width * height];
+                let empty = Occupancy {
+                    area,
+                    time,
+                    probabilities,
+                };
+                publish(output, occupancy_grid(&empty, &header))?;
+            }
         }
+        let joint = self.options.joint;
+        publish(
+            &outputs.forecasts,
+            Forecasts {
+                header,
+                joint,
+                ..Forecasts::default()
+            },
+        )
     }
 }
 

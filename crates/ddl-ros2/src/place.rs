@@ -79,6 +79,11 @@ impl Place {
         Ok(now)
     }
 
+    /// Whether the last frame is one to forecast; without a forecast, nobody is observed well enough.
+    pub(crate) fn is_moment(&self) -> bool {
+        self.live.tracks().is_moment()
+    }
+
     /// Number of rows of the last frame that do not fit their track.
     pub(crate) fn doubtful(&self) -> usize {
         self.live.tracks().misfits().len()

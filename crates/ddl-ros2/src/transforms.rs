@@ -1,6 +1,6 @@
 //! Where frames are in the fixed frame: the transforms of `/tf` and `/tf_static`, or one that is given.
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Error, anyhow, bail, ensure};
 use ddl_ros::msg::{Header, Point, TfMessage};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
 use std::collections::{BTreeMap, VecDeque};
@@ -46,7 +46,7 @@ impl Transforms {
             let turned = Quaternion::new(turned.w, turned.x, turned.y, turned.z);
             let Some(turned) = UnitQuaternion::try_new(turned, 1e-6).filter(|_| (to.x + to.y + to.z).is_finite())
             else {
-                added = Err(anyhow::anyhow!("the transform from {frame} to {parent} is not one"));
+                added = Err(anyhow!("the transform from {frame} to {parent} is not one"));
                 continue;
             };
             let pose = Isometry3::from_parts(Translation3::new(to.x, to.y, to.z), turned);
@@ -80,10 +80,10 @@ impl Transforms {
             "the tracks name no frame: set header.frame_id, or give --transform"
         );
         let time = header.stamp.microseconds();
+        let others = self.upwards(to, time);
         for (ancestor, up) in self.upwards(from, time) {
-            if let Some((_, other)) = self.upwards(to, time).find(|(frame, _)| *frame == ancestor) {
-                let found = || format!("the transform from {from} to {to}");
-                return Ok(other.with_context(found)?.inverse() * up.with_context(found)?);
+            if let Some((_, other)) = others.iter().find(|(frame, _)| *frame == ancestor) {
+                return Ok(other.clone().map_err(Error::msg)?.inverse() * up.map_err(Error::msg)?);
             }
         }
         bail!(
@@ -93,50 +93,42 @@ impl Transforms {
     }
 
     /// The frame and its ancestors, with the transform from the frame to each.
-    fn upwards<'a>(
-        &'a self,
-        frame: &'a str,
-        time: i64,
-    ) -> impl Iterator<Item = (&'a str, anyhow::Result<Isometry3<f64>>)> {
-        let mut next = Some((frame, Ok(Isometry3::identity())));
-        let step = move || {
-            let (frame, up): (&str, anyhow::Result<_>) = next.take()?;
-            let link = self.frames.get(frame);
-            next = link.map(|link| {
-                let up = up.as_ref().map_err(|error| anyhow::anyhow!("{error}"));
-                (
-                    link.parent.as_str(),
-                    up.and_then(|up| Ok(link.at(time, self.holds)? * up)),
-                )
-            });
-            Some((frame, up))
-        };
+    fn upwards<'a>(&'a self, frame: &'a str, time: i64) -> Vec<(&'a str, Result<Isometry3<f64>, String>)> {
+        let mut chain = vec![(frame, Ok(Isometry3::identity()))];
         // A frame that is its own ancestor has no end.
-        std::iter::from_fn(step).take(self.frames.len() + 1)
+        while chain.len() <= self.frames.len()
+            && let Some((frame, up)) = chain.last()
+            && let Some(link) = self.frames.get(*frame)
+        {
+            let of_link = |problem| format!("the transform from {frame} to {} {problem}", link.parent);
+            let up = up
+                .clone()
+                .and_then(|up| Ok(link.at(time, self.holds).map_err(of_link)? * up));
+            chain.push((&link.parent, up));
+        }
+        chain
     }
 }
 
 impl Link {
-    fn at(&self, time: i64, holds: i64) -> anyhow::Result<Isometry3<f64>> {
-        let after = self.poses.partition_point(|(stamp, _)| *stamp <= time);
-        let next = self.poses.get(after);
+    fn at(&self, time: i64, holds: i64) -> Result<Isometry3<f64>, String> {
+        let seconds = |microseconds: i64| microseconds as f64 / 1e6;
+        let after = self
+            .poses
+            .partition_point(|(stamp, _)| self.is_static || *stamp <= time);
         let Some((stamp, pose)) = after.checked_sub(1).and_then(|last| self.poses.get(last)) else {
-            let (first, pose) = next.context("is empty")?;
-            ensure!(self.is_static, "begins {} s after the tracks", seconds(first - time));
-            return Ok(*pose);
+            return Err("begins after the tracks".to_owned());
         };
-        if self.is_static {
-            return Ok(*pose);
-        }
-        let Some((next, next_pose)) = next else {
+        let Some((next, next_pose)) = self.poses.get(after) else {
             let age = time - stamp;
-            ensure!(
-                age <= holds,
+            if self.is_static || age <= holds {
+                return Ok(*pose);
+            }
+            return Err(format!(
                 "is {} s old; --transform-age allows {} s",
                 seconds(age),
                 seconds(holds)
-            );
-            return Ok(*pose);
+            ));
         };
         let share = (time - stamp) as f64 / (next - stamp) as f64;
         Ok(pose.try_lerp_slerp(next_pose, share, 1e-9).unwrap_or(*pose))
@@ -144,20 +136,12 @@ impl Link {
 }
 
 /// A place in the frame that a transform leads to.
-pub(crate) fn moved(transform: &Isometry3<f64>, place: Point) -> Point {
-    let Point3 { coords } = transform * Point3::new(place.x, place.y, place.z);
-    Point {
-        x: coords.x,
-        y: coords.y,
-        z: coords.z,
-    }
+pub(crate) fn moved(transform: &Isometry3<f64>, Point { x, y, z }: Point) -> Point {
+    let [x, y, z] = (transform * Point3::new(x, y, z)).into();
+    Point { x, y, z }
 }
 
 /// Frames of ROS 1 begin with a slash.
 fn name(frame: &str) -> &str {
     frame.trim_start_matches('/')
-}
-
-fn seconds(microseconds: i64) -> f64 {
-    microseconds as f64 / 1e6
 }

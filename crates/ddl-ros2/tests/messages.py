@@ -1,116 +1,73 @@
 """Messages of ROS 2 for an independent DDS: fields written by hand, with the names that ROS 2 gives the types."""
 
 from cyclonedds.idl import make_idl_struct
+from cyclonedds.idl import types as idl
 from cyclonedds.idl.annotations import final
-from cyclonedds.idl.types import array, byte, float32, float64, int8, int32, sequence, uint32, uint64
+
+KINDS = {name: getattr(idl, name) for name in "byte float32 float64 int8 int32 uint32 uint64".split()}
+KINDS |= {"string": str, "bool": bool, "covariance": idl.array[idl.float64, 36]}
+
+TEXT = """
+builtin_interfaces/Time: int32 sec, uint32 nanosec
+builtin_interfaces/Duration: int32 sec, uint32 nanosec
+std_msgs/Header: Time stamp, string frame_id
+std_msgs/ColorRGBA: float32 r, float32 g, float32 b, float32 a
+geometry_msgs/Point: float64 x, float64 y, float64 z
+geometry_msgs/Vector3: float64 x, float64 y, float64 z
+geometry_msgs/Quaternion: float64 x, float64 y, float64 z, float64 w
+geometry_msgs/Pose: Point position, Quaternion orientation
+geometry_msgs/PoseStamped: Header header, Pose pose
+geometry_msgs/PoseWithCovariance: Pose pose, covariance covariance
+geometry_msgs/Twist: Vector3 linear, Vector3 angular
+geometry_msgs/TwistWithCovariance: Twist twist, covariance covariance
+geometry_msgs/Transform: Vector3 translation, Quaternion rotation
+geometry_msgs/TransformStamped: Header header, string child_frame_id, Transform transform
+tf2_msgs/TFMessage: TransformStamped[] transforms
+vision_msgs/ObjectHypothesis: string class_id, float64 score
+vision_msgs/ObjectHypothesisWithPose: ObjectHypothesis hypothesis, PoseWithCovariance pose
+vision_msgs/BoundingBox3D: Pose center, Vector3 size
+vision_msgs/Detection3D: Header header, ObjectHypothesisWithPose[] results, BoundingBox3D bbox, string id
+vision_msgs/Detection3DArray: Header header, Detection3D[] detections
+people_msgs/Person: string name, Point position, Point velocity, float64 reliability, string[] tagnames, string[] tags
+people_msgs/People: Header header, Person[] people
+spencer_tracking_msgs/TrackedPerson: uint64 track_id, bool is_occluded, bool is_matched, uint64 detection_id, \
+Duration age, PoseWithCovariance pose, TwistWithCovariance twist
+spencer_tracking_msgs/TrackedPersons: Header header, TrackedPerson[] tracks
+nav_msgs/Path: Header header, PoseStamped[] poses
+nav_msgs/MapMetaData: Time map_load_time, float32 resolution, uint32 width, uint32 height, Pose origin
+nav_msgs/OccupancyGrid: Header header, MapMetaData info, int8[] data
+sensor_msgs/CompressedImage: Header header, string format, byte[] data
+visualization_msgs/UVCoordinate: float32 u, float32 v
+visualization_msgs/MeshFile: string filename, byte[] data
+visualization_msgs/Marker: Header header, string ns, int32 id, int32 type, int32 action, Pose pose, Vector3 scale, \
+ColorRGBA color, Duration lifetime, bool frame_locked, Point[] points, ColorRGBA[] colors, string texture_resource, \
+CompressedImage texture, UVCoordinate[] uv_coordinates, string text, string mesh_resource, MeshFile mesh_file, \
+bool mesh_use_embedded_materials
+visualization_msgs/MarkerArray: Marker[] markers
+diagnostic_msgs/KeyValue: string key, string value
+diagnostic_msgs/DiagnosticStatus: byte level, string name, string message, string hardware_id, KeyValue[] values
+diagnostic_msgs/DiagnosticArray: Header header, DiagnosticStatus[] status
+ddl_msgs/Hypothesis: float64 weight, bool certified, Point goal, float64[] x, float64[] y
+ddl_msgs/PedestrianForecast: string id, Point position, float64 age, float64 familiarity, float64[] scales, \
+Hypothesis[] hypotheses
+ddl_msgs/Forecasts: Header header, float64 time_step, bool joint, PedestrianForecast[] pedestrians
+"""
 
 
-def message(name, /, **fields):
+def message(line):
+    """The type of a line `package/Name: kind field, kind field`."""
+    name, fields = line.split(": ")
     package, short = name.split("/")
-    return final(make_idl_struct(short, f"{package}::msg::dds_::{short}_", fields))
+
+    def kind(text):
+        element = KINDS[text.removesuffix("[]")]
+        return idl.sequence[element] if text.endswith("[]") else element
+
+    fields = [field.split(" ") for field in fields.split(", ")]
+    types = {name: kind(text) for text, name in fields}
+    return final(make_idl_struct(short, f"{package}::msg::dds_::{short}_", types))
 
 
-Time = message("builtin_interfaces/Time", sec=int32, nanosec=uint32)
-Duration = message("builtin_interfaces/Duration", sec=int32, nanosec=uint32)
-Header = message("std_msgs/Header", stamp=Time, frame_id=str)
-Color = message("std_msgs/ColorRGBA", r=float32, g=float32, b=float32, a=float32)
-Point = message("geometry_msgs/Point", x=float64, y=float64, z=float64)
-Vector = message("geometry_msgs/Vector3", x=float64, y=float64, z=float64)
-Quaternion = message("geometry_msgs/Quaternion", x=float64, y=float64, z=float64, w=float64)
-Pose = message("geometry_msgs/Pose", position=Point, orientation=Quaternion)
-PoseStamped = message("geometry_msgs/PoseStamped", header=Header, pose=Pose)
-UncertainPose = message("geometry_msgs/PoseWithCovariance", pose=Pose, covariance=array[float64, 36])
-Twist = message("geometry_msgs/Twist", linear=Vector, angular=Vector)
-UncertainTwist = message("geometry_msgs/TwistWithCovariance", twist=Twist, covariance=array[float64, 36])
-Transform = message("geometry_msgs/Transform", translation=Vector, rotation=Quaternion)
-TransformStamped = message(
-    "geometry_msgs/TransformStamped", header=Header, child_frame_id=str, transform=Transform
-)
-TFMessage = message("tf2_msgs/TFMessage", transforms=sequence[TransformStamped])
-
-Guess = message("vision_msgs/ObjectHypothesis", class_id=str, score=float64)
-PlacedGuess = message("vision_msgs/ObjectHypothesisWithPose", hypothesis=Guess, pose=UncertainPose)
-Box = message("vision_msgs/BoundingBox3D", center=Pose, size=Vector)
-Detection = message(
-    "vision_msgs/Detection3D", header=Header, results=sequence[PlacedGuess], bbox=Box, id=str
-)
-Detections = message("vision_msgs/Detection3DArray", header=Header, detections=sequence[Detection])
-Person = message(
-    "people_msgs/Person",
-    name=str,
-    position=Point,
-    velocity=Point,
-    reliability=float64,
-    tagnames=sequence[str],
-    tags=sequence[str],
-)
-People = message("people_msgs/People", header=Header, people=sequence[Person])
-TrackedPerson = message(
-    "spencer_tracking_msgs/TrackedPerson",
-    track_id=uint64,
-    is_occluded=bool,
-    is_matched=bool,
-    detection_id=uint64,
-    age=Duration,
-    pose=UncertainPose,
-    twist=UncertainTwist,
-)
-TrackedPersons = message("spencer_tracking_msgs/TrackedPersons", header=Header, tracks=sequence[TrackedPerson])
-
-Path = message("nav_msgs/Path", header=Header, poses=sequence[PoseStamped])
-MapMetaData = message(
-    "nav_msgs/MapMetaData", map_load_time=Time, resolution=float32, width=uint32, height=uint32, origin=Pose
-)
-OccupancyGrid = message("nav_msgs/OccupancyGrid", header=Header, info=MapMetaData, data=sequence[int8])
-Image = message("sensor_msgs/CompressedImage", header=Header, format=str, data=sequence[byte])
-UV = message("visualization_msgs/UVCoordinate", u=float32, v=float32)
-Mesh = message("visualization_msgs/MeshFile", filename=str, data=sequence[byte])
-Marker = message(
-    "visualization_msgs/Marker",
-    header=Header,
-    ns=str,
-    id=int32,
-    type=int32,
-    action=int32,
-    pose=Pose,
-    scale=Vector,
-    color=Color,
-    lifetime=Duration,
-    frame_locked=bool,
-    points=sequence[Point],
-    colors=sequence[Color],
-    texture_resource=str,
-    texture=Image,
-    uv_coordinates=sequence[UV],
-    text=str,
-    mesh_resource=str,
-    mesh_file=Mesh,
-    mesh_use_embedded_materials=bool,
-)
-MarkerArray = message("visualization_msgs/MarkerArray", markers=sequence[Marker])
-KeyValue = message("diagnostic_msgs/KeyValue", key=str, value=str)
-Status = message(
-    "diagnostic_msgs/DiagnosticStatus",
-    level=byte,
-    name=str,
-    message=str,
-    hardware_id=str,
-    values=sequence[KeyValue],
-)
-Diagnostics = message("diagnostic_msgs/DiagnosticArray", header=Header, status=sequence[Status])
-
-Hypothesis = message(
-    "ddl_msgs/Hypothesis", weight=float64, certified=bool, goal=Point, x=sequence[float64], y=sequence[float64]
-)
-Forecast = message(
-    "ddl_msgs/PedestrianForecast",
-    id=str,
-    position=Point,
-    age=float64,
-    familiarity=float64,
-    scales=sequence[float64],
-    hypotheses=sequence[Hypothesis],
-)
-Forecasts = message(
-    "ddl_msgs/Forecasts", header=Header, time_step=float64, joint=bool, pedestrians=sequence[Forecast]
-)
+for line in TEXT.strip().splitlines():
+    made = message(line)
+    KINDS[made.__name__] = globals()[made.__name__] = made

@@ -8,8 +8,7 @@ import messages as m
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.pub import DataWriter
 from cyclonedds.topic import Topic
-
-from conftest import QOS, until
+from dds import QOS, until
 
 domain, frames = map(int, sys.argv[1:])
 participant = DomainParticipant(domain)

@@ -1,13 +1,9 @@
 """An independent DDS (Cyclone) on the loopback interface, and the node as its own process beside it."""
 
-import json
 import os
 import subprocess
-import sys
 import time
 from pathlib import Path
-
-import pytest
 
 # One domain for each process of the tests, away from that of a robot.
 DOMAIN = 100 + os.getpid() % 100
@@ -16,7 +12,6 @@ os.environ["CYCLONEDDS_URI"] = """<CycloneDDS><Domain><General>
 </General><Discovery><ParticipantIndex>auto</ParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery>
 </Domain></CycloneDDS>"""
 
-pytest.importorskip("cyclonedds", reason="pip install cyclonedds")
 from cyclonedds.core import Policy, Qos  # noqa: E402
 from cyclonedds.domain import DomainParticipant  # noqa: E402
 from cyclonedds.pub import DataWriter  # noqa: E402
@@ -73,18 +68,3 @@ def matched(*endpoints):
         until(getattr(endpoint, other))
     # A reliable writer of the node may learn of its reader later.
     time.sleep(0.5)
-
-
-@pytest.fixture
-def robot(tmp_path):
-    default = Path(__file__).parents[3] / "target/debug/ddl-ros2"
-    program = Path(os.environ.get("DDL_ROS2", default))
-    if not program.is_file():
-        assert "CI" not in os.environ, f"{program} is missing"
-        pytest.skip("cargo build -p ddl-ros2")
-    robot = Robot(program, tmp_path / "log")
-    yield robot
-    for node in robot.nodes:
-        node.terminate()
-        assert node.wait(20) == 0
-    sys.stderr.write(robot.told())
