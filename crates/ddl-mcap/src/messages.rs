@@ -140,18 +140,24 @@ fn unpacked(chunk: &[u8]) -> Result<Vec<u8>, String> {
     };
     let packed: Box<dyn Read> = match header.compression.as_str() {
         "" => Box::new(&*data),
-        "zstd" => Box::new(ruzstd::decoding::StreamingDecoder::new(&*data).map_err(text)?),
+        "zstd" => Box::new(ruzstd::decoding::StreamingDecoder::new(&*data).map_err(damaged)?),
         "lz4" => Box::new(lz4_flex::frame::FrameDecoder::new(&*data)),
         other => return Err(format!("chunks are compressed by {other:?}; zstd and lz4 are read")),
     };
     let mut records = Vec::new();
     let read = packed.take(MOST as u64).read_to_end(&mut records);
-    read.map_err(|error| format!("a chunk is damaged: {error}"))?;
+    read.map_err(damaged)?;
     let crc = header.uncompressed_crc;
     if records.len() as u64 != header.uncompressed_size || (crc != 0 && crc32fast::hash(&records) != crc) {
-        return Err(format!("a chunk is damaged, or larger than {MOST} bytes"));
+        return Err(damaged(format!(
+            "its checksum or size is wrong, or it is larger than {MOST} bytes"
+        )));
     }
     Ok(records)
+}
+
+fn damaged(error: impl std::fmt::Display) -> String {
+    format!("a chunk is damaged: {error}")
 }
 
 fn text(error: impl std::fmt::Display) -> String {

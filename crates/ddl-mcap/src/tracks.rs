@@ -97,6 +97,7 @@ fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(S
     match (asked, found.next(), found.next()) {
         (_, Some(name), None) => Ok(topics.remove_entry(&name).unwrap_or_default()),
         (None, Some(_), _) => Err(format!("choose a topic by --topic: {}", listed(holds_tracks))),
+        _ if topics.is_empty() => Err("there is no message; is the file empty or cut off?".to_owned()),
         (None, None, _) => Err(format!("no tracks in {}; read is {READ}", listed(|_| true))),
         (Some(asked), ..) => Err(match topics.get(asked) {
             Some(topic) => format!("topic {asked} holds no tracks but {}; read is {READ}", topic.kind),
