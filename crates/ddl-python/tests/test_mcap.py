@@ -182,6 +182,7 @@ def test_a_csv_is_written_as_mcap_too(program, folder):
         [forecast] = [it.decoded_message for it in reader.iter_decoded_messages(topics=["/ddl/forecasts"])]
     assert forecast.joint and forecast.header.frame_id == "map"
     assert [one.id for one in forecast.pedestrians] == ["p1", "p2", "p3"]
-    assert "only forecasts are written as MCAP" in run(
-        program, "occupancy", folder / "tracks.csv", "--last", "-o", folder / "grid.mcap"
-    ).stderr
+    assert (
+        "only forecasts are written as MCAP"
+        in run(program, "occupancy", folder / "tracks.csv", "--last", "-o", folder / "grid.mcap").stderr
+    )

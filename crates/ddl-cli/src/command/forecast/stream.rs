@@ -30,7 +30,7 @@ pub(crate) struct StreamOptions {
     pub(super) model: ModelChoice,
     #[command(flatten)]
     pub(super) tracks: TrackOptions,
-    /// File to write [default: standard output, also as `-`]; forecasts also as .mcap, for Foxglove, Rerun and ROS 2
+    /// File to write [default: standard output, also as `-`]; forecasts also as .mcap, for Foxglove and ROS 2
     #[arg(long, short)]
     pub(crate) output: Option<PathBuf>,
     /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
