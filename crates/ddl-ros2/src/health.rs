@@ -60,7 +60,7 @@ impl Health {
     /// Tells a fault, unless one was told that differs in numbers alone.
     pub(crate) fn fault(&mut self, error: &anyhow::Error) {
         self.last_error = format!("{error:#}");
-        let kind = self.last_error.replace(|letter: char| letter.is_ascii_digit(), "");
+        let kind = self.last_error.replace(|letter: char| letter.is_ascii_digit() || letter == '.', "");
         if self.told.len() < MOST_TOLD && self.told.insert(kind) {
             tell(&format!("warning: {error:#} (told once; /diagnostics counts)"));
         }
