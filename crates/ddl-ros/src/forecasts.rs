@@ -89,7 +89,7 @@ impl Moment<'_> {
                 ns: ns.to_owned(),
                 r#type,
                 scale: [size; 2].into(),
-                color: orange(1.0),
+                color: blue(1.0),
                 lifetime: LIFETIME,
                 ..Marker::default()
             });
@@ -99,7 +99,7 @@ impl Moment<'_> {
             let most = self.forecast.weight(i, self.forecast.most_likely(i));
             for k in 0..self.forecast.hypotheses() {
                 ends.points.push(self.forecast.hypothesis(i, k)[HORIZON - 1].into());
-                ends.colors.push(orange((self.forecast.weight(i, k) / most) as f32));
+                ends.colors.push(blue((self.forecast.weight(i, k) / most) as f32));
             }
         }
         MarkerArray {
@@ -145,7 +145,8 @@ fn pose(position: Position) -> Pose {
     }
 }
 
-fn orange(a: f32) -> Color {
-    let [r, g, b] = [0.9, 0.45, 0.0];
+/// As hypotheses are in all pictures.
+fn blue(a: f32) -> Color {
+    let [r, g, b] = [0.11, 0.37, 0.76];
     Color { r, g, b, a }
 }

@@ -25,6 +25,8 @@ pub(crate) struct Health {
     pub(crate) frames: u64,
     dropped: u64,
     pub(crate) forecasts: u64,
+    /// Messages without a forecast, because a newer one had come.
+    pub(crate) skipped: u64,
     /// Messages that did not arrive.
     pub(crate) lost: u64,
     pub(crate) occluded: u64,
@@ -60,7 +62,9 @@ impl Health {
     /// Tells a fault, unless one was told that differs in numbers alone.
     pub(crate) fn fault(&mut self, error: &anyhow::Error) {
         self.last_error = format!("{error:#}");
-        let kind = self.last_error.replace(|letter: char| letter.is_ascii_digit(), "");
+        let kind = self
+            .last_error
+            .replace(|letter: char| letter.is_ascii_digit() || letter == '.', "");
         if self.told.len() < MOST_TOLD && self.told.insert(kind) {
             tell(&format!("warning: {error:#} (told once; /diagnostics counts)"));
         }
@@ -91,6 +95,7 @@ impl Health {
             ("frames", self.frames.to_string()),
             ("forecasts", self.forecasts.to_string()),
             ("dropped", self.dropped.to_string()),
+            ("skipped", self.skipped.to_string()),
             ("lost", self.lost.to_string()),
             ("occluded tracks left out", self.occluded.to_string()),
             ("doubtful positions", self.doubtful.to_string()),

@@ -6,15 +6,16 @@ use crate::place::Place;
 use crate::tell;
 use crate::transforms::{Transforms, moved};
 use anyhow::{Context as _, anyhow};
-use ddl::LiveForecast;
+use ddl::Forecast;
+use ddl::data::Window;
 use ddl::scene::{Area, Futures, Occupancy};
 use ddl_ros::msg::{DiagnosticArray, Forecasts, Header, MarkerArray, OccupancyGrid, Path, TfMessage};
 use ddl_ros::{Message, Moment, Observed, Tracks, occupancy_grid};
 use ros2_client::dds::rustdds::{DomainParticipantBuilder, Topic, mio1};
 use ros2_client::qos::{Durability, History, WhenFull};
 use ros2_client::{
-    Context, Gid, MessageInfo, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription,
-    SystemTime,
+    Context, Gid, MessageInfo, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, ROSTime,
+    Subscription, SystemTime,
 };
 use std::io::ErrorKind;
 use std::sync::Arc;
@@ -43,6 +44,7 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
         last_area: None,
         health: Health::default(),
         last: None,
+        arrived: None,
     };
     let mut node = open(options).context("the node cannot be opened")?;
     let outputs = Outputs::open(&mut node, options)?;
@@ -82,9 +84,12 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
         }
         while let Some(message) = take(&tracks) {
             forecasting.health.hear();
-            let answered = message.and_then(|(message, info)| forecasting.answer(message, &info, &outputs));
-            answered.unwrap_or_else(|error| forecasting.health.dropped(&error));
+            let observed = message.and_then(|(message, info)| forecasting.observe(message, &info));
+            observed.unwrap_or_else(|error| forecasting.health.dropped(&error));
         }
+        forecasting
+            .answer(&outputs)
+            .unwrap_or_else(|error| forecasting.health.dropped(&error));
         if let Some(report) = forecasting.health.report(&options.name) {
             publish(&outputs.diagnostics, report).unwrap_or_else(|error| forecasting.health.fault(&error));
         }
@@ -108,10 +113,11 @@ struct Forecasting<'a> {
     health: Health,
     /// The publisher and number of the last message with tracks.
     last: Option<(Gid, i64)>,
+    arrived: Option<ROSTime>,
 }
 
 impl Forecasting<'_> {
-    fn answer<T: Tracks>(&mut self, message: T, info: &MessageInfo, outputs: &Outputs) -> anyhow::Result<()> {
+    fn observe<T: Tracks>(&mut self, message: T, info: &MessageInfo) -> anyhow::Result<()> {
         let (publisher, number) = (info.publisher_gid(), info.sequence_number());
         if let Some((last_publisher, last)) = self.last.replace((publisher, number))
             && last_publisher == publisher
@@ -124,13 +130,19 @@ impl Forecasting<'_> {
             observed.pedestrians.retain(|seen| seen.class == *class);
         }
         self.to_fixed(&mut observed)?;
-        let now = self.place.forecast(&observed)?;
-        self.health.doubtful += self.place.doubtful() as u64;
-        match now {
-            Some(now) => self.publish(&now, &observed.header, info, outputs)?,
-            None if self.place.is_moment() => self.publish_nobody(observed.header, outputs)?,
-            None => {}
+        self.health.doubtful += self.place.observe(&observed)? as u64;
+        self.arrived = info.received_timestamp();
+        Ok(())
+    }
+
+    fn answer(&mut self, outputs: &Outputs) -> anyhow::Result<()> {
+        if let Some(answer) = self.place.forecast()? {
+            match &answer.forecast {
+                Some((window, forecast)) => self.publish(window, forecast, &answer.header, outputs)?,
+                None => self.publish_nobody(answer.header, outputs)?,
+            }
         }
+        self.health.skipped = self.place.skipped();
         self.place.save()
     }
 
@@ -147,19 +159,19 @@ impl Forecasting<'_> {
 
     fn publish(
         &mut self,
-        now: &LiveForecast,
+        window: &Window,
+        forecast: &Forecast,
         header: &Header,
-        info: &MessageInfo,
         outputs: &Outputs,
     ) -> anyhow::Result<()> {
         let moment = Moment {
-            window: &now.window,
-            forecast: &now.forecast,
+            window,
+            forecast,
             header,
             joint: self.options.joint,
         };
         publish(&outputs.forecasts, moment.forecasts())?;
-        if let Some(arrived) = info.received_timestamp() {
+        if let Some(arrived) = self.arrived {
             let latency = SystemTime::now().to_nanos() - arrived.to_nanos();
             self.health.answered(latency as f64 / 1e6);
         }
@@ -170,7 +182,7 @@ impl Forecasting<'_> {
         if outputs.grids.is_empty() {
             return Ok(());
         }
-        let futures = Futures::new(&now.window, now.forecast.clone())?;
+        let futures = Futures::new(window, forecast.clone())?;
         let around = || futures.area(MARGIN, self.options.cell);
         let area = *self.last_area.insert(self.fixed_area.map_or_else(around, Ok)?);
         let grids = futures.occupancy(&area, &self.options.grids, Occupancy::BODY)?;

@@ -3,21 +3,36 @@
 use crate::options::Options;
 use crate::tell;
 use anyhow::ensure;
-use ddl::data::{Clock, Completeness, LiveTracks, Numbering, PedestrianNames, TimeUnit};
-use ddl::{AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, LiveForecast, LiveForecaster, MemoryFile, ModelSource};
+use ddl::data::{Clock, Completeness, LiveTracks, Numbering, PedestrianNames, TimeUnit, Window};
+use ddl::{
+    AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, LiveScenes, MemoryFile, ModelSource,
+};
 use ddl_ros::Observed;
+use ddl_ros::msg::Header;
 
 /// Names of pedestrians that keep their numbers.
 const MOST_NAMES: usize = 100_000;
 
 pub(crate) struct Place {
-    live: LiveForecaster<Ddl>,
+    model: Ddl,
+    /// One scene, without a name.
+    scenes: LiveScenes,
+    regions: AdaptiveRegions,
     file: Option<MemoryFile>,
     joint: bool,
     numbering: Numbering,
     names: PedestrianNames,
     /// Microseconds of the last frame.
     last: Option<i64>,
+    /// The frame to forecast next.
+    moment: Option<Header>,
+}
+
+/// The answer to a frame.
+pub(crate) struct Answer {
+    pub(crate) header: Header,
+    /// `None` if nobody is observed well enough.
+    pub(crate) forecast: Option<(Window, Forecast)>,
 }
 
 impl Place {
@@ -30,25 +45,27 @@ impl Place {
             .with_completeness(Completeness::Partial)
             .with_max_age(options.max_age)
             .with_interval(options.rate.map_or(0.0, |rate| 1.0 / rate));
-        let live = LiveForecaster::with_tracks(Ddl::open(&source, device)?, tracks);
         let mut place = Self {
-            live: live.with_adaptive_regions(AdaptiveRegions::default()),
+            model: Ddl::open(&source, device)?,
+            scenes: LiveScenes::new(tracks).latest_only(),
+            regions: AdaptiveRegions::default(),
             file: None,
             joint: options.joint,
             numbering: Numbering::remembering(MOST_NAMES),
             names: PedestrianNames::default(),
             last: None,
+            moment: None,
         };
         if let Some(path) = &options.memory {
             let (file, memory) = MemoryFile::open(path)?;
-            place.live = place.live.remembering(memory)?;
+            place.scenes.remember(None, &place.model, memory)?;
             place.file = Some(file);
         }
         Ok(place)
     }
 
-    /// Adds a frame in fixed coordinates. `None` without pedestrians to forecast, or too soon after the last forecast.
-    pub(crate) fn forecast(&mut self, observed: &Observed) -> anyhow::Result<Option<LiveForecast>> {
+    /// Adds a frame in fixed coordinates. Returns the number of rows that do not fit their track.
+    pub(crate) fn observe(&mut self, observed: &Observed) -> anyhow::Result<usize> {
         let time = observed.header.stamp.microseconds();
         if let Some(last) = self.last
             && time <= last
@@ -61,37 +78,62 @@ impl Place {
             tell(&format!(
                 "note: time goes back from {last} s to {time} s; all tracks begin anew"
             ));
-            self.live.clear();
+            self.regions.clear();
+            if let Some(place) = self.scenes.forget(None) {
+                self.scenes.remember(None, &self.model, Some(place.memory().clone()))?;
+            }
         }
         let (seen, newer) = observed.numbered(&mut self.numbering);
-        let mut now = if self.joint {
-            self.live.push_joint(time, seen, None)?
-        } else {
-            self.live.push(time, seen)?
-        };
+        self.scenes.observe(None, time, seen)?;
         self.last = Some(time);
-        let window = now.as_ref().map(|now| &now.window);
-        let is_kept = |id| window.is_none_or(|window| window.pedestrians().contains(&id));
-        self.names = self.names.updated(&newer, is_kept);
-        if let Some(now) = &mut now {
-            now.window = now.window.clone().with_names(self.names.clone());
+        self.names = self.names.updated(&newer, |_| true);
+        let tracks = self.scenes.tracks(None);
+        if tracks.is_some_and(LiveTracks::is_moment) {
+            self.moment = Some(observed.header.clone());
         }
-        Ok(now)
+        Ok(tracks.map_or(0, |tracks| tracks.misfits().len()))
     }
 
-    /// Whether the last frame is one to forecast; without a forecast, nobody is observed well enough.
-    pub(crate) fn is_moment(&self) -> bool {
-        self.live.tracks().is_moment()
+    /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame.
+    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<Answer>> {
+        let Some(header) = self.moment.take() else {
+            return Ok(None);
+        };
+        let forecast = match self.scenes.next_batch(LiveScenes::BATCH).windows.pop() {
+            None => None,
+            Some(window) if self.joint => {
+                let forecast = self
+                    .model
+                    .forecast_scenes(std::slice::from_ref(&window), None)?
+                    .remove(0);
+                Some((window, forecast))
+            }
+            Some(window) => {
+                let forecast = self.model.forecast(&window)?;
+                let adapted = self.regions.adapt(&window, forecast);
+                Some((window, adapted))
+            }
+        };
+        let named = forecast.map(|(window, forecast)| {
+            self.names = self
+                .names
+                .updated(&PedestrianNames::default(), |id| window.pedestrians().contains(&id));
+            (window.with_names(self.names.clone()), forecast)
+        });
+        Ok(Some(Answer {
+            header,
+            forecast: named,
+        }))
     }
 
-    /// Number of rows of the last frame that do not fit their track.
-    pub(crate) fn doubtful(&self) -> usize {
-        self.live.tracks().misfits().len()
+    /// Number of frames that were skipped.
+    pub(crate) fn skipped(&self) -> u64 {
+        self.scenes.dropped()
     }
 
     /// Writes the memory, if a minute has passed.
     pub(crate) fn save(&mut self) -> anyhow::Result<()> {
-        if let (Some(file), Some(place)) = (&mut self.file, self.live.place())
+        if let (Some(file), Some(place)) = (&mut self.file, self.scenes.place(None))
             && file.is_due()
         {
             file.write(place)?;
@@ -101,7 +143,7 @@ impl Place {
 
     /// Writes the memory for the last time.
     pub(crate) fn close(mut self) -> anyhow::Result<()> {
-        if let (Some(file), Some(place)) = (&mut self.file, self.live.place())
+        if let (Some(file), Some(place)) = (&mut self.file, self.scenes.place(None))
             && let Some(reason) = file.end(place.clone())?
         {
             tell(&format!("warning: {reason}"));
