@@ -20,6 +20,7 @@ mod known_recordings;
 mod leak;
 mod live;
 mod live_memory;
+mod logs;
 mod other_program;
 mod own_recordings;
 mod packed;

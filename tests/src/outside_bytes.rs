@@ -5,6 +5,7 @@
 mod edits;
 mod external;
 mod live_tracks;
+mod logs;
 mod model_files;
 mod own_tracks;
 mod scene_memory;
@@ -38,7 +39,7 @@ enum Seeds {
 pub struct Reader(&'static str, Seeds, fn(&[u8]));
 
 /// The readers that need no libtorch.
-pub const READERS: [Reader; 21] = [
+pub const READERS: [Reader; 22] = [
     Reader("table", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Table)),
     Reader("star_csv", Seeds::Corpus, |bytes| tracks::check(bytes, Format::StarCsv)),
     Reader("social_gan", Seeds::Corpus, |bytes| {
@@ -49,6 +50,7 @@ pub const READERS: [Reader; 21] = [
     Reader("own_tracks", Seeds::Corpus, own_tracks::read),
     Reader("stream", Seeds::Corpus, stream::read),
     Reader("live_tracks", Seeds::Corpus, live_tracks::read),
+    Reader("mcap", Seeds::Corpus, logs::read),
     Reader("homography", Seeds::Corpus, values::homography),
     Reader("foreign_json_lines", Seeds::Corpus, |bytes| {
         external::check(bytes, ExternalFormat::JsonLines);

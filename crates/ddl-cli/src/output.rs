@@ -24,13 +24,17 @@ pub(crate) fn write_parts<T: AsRef<str>>(
     let Some(path) = file_of(path) else {
         return parts.into_iter().try_for_each(|part| print(part?.as_ref()));
     };
-    let unwritable = || format!("cannot write to {}", path.display());
-    let write = |file: &mut File| {
+    write_file(path, |file| {
         parts.into_iter().try_for_each(|part| {
             let written = file.write_all(part?.as_ref().as_bytes());
-            written.with_context(unwritable)
+            written.with_context(|| format!("cannot write to {}", path.display()))
         })
-    };
+    })
+}
+
+/// Writes a file under a temporary name that is renamed.
+pub(crate) fn write_file(path: &Path, write: impl FnOnce(&mut File) -> anyhow::Result<()>) -> anyhow::Result<()> {
+    let unwritable = || format!("cannot write to {}", path.display());
     // A device or a pipe cannot be replaced, and `/dev/stdout` not either when it leads to a file.
     let is_of_system = ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder));
     if path.exists() && (is_of_system || !path.is_file()) {

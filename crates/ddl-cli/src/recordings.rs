@@ -7,7 +7,7 @@ use ddl::data::{Clock, Misfit, PlausibilityWarning, Recording};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
-pub(crate) const EXTENSIONS: [&str; 4] = ["csv", "tsv", "txt", "ndjson"];
+pub(crate) const EXTENSIONS: [&str; 5] = ["csv", "tsv", "txt", "ndjson", "mcap"];
 /// Number of unreadable files that are reported individually.
 const MOST_REPORTED: usize = 10;
 
@@ -15,7 +15,7 @@ const MOST_REPORTED: usize = 10;
 pub(crate) fn files(paths: &[PathBuf], units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for path in paths {
-        if path.is_dir() {
+        if path.is_dir() && !ddl_mcap::is_log(path) {
             files.extend(in_folder(path, units)?);
         } else {
             files.push(path.clone());
@@ -40,7 +40,8 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     }
     if files.is_empty() {
         bail!(
-            "{} holds no recordings: it needs files that end in .csv, .tsv, .txt or .ndjson (subfolders are not read)",
+            "{} holds no recordings: it needs files that end in .csv, .tsv, .txt, .ndjson or .mcap (subfolders are not \
+             read)",
             folder.display()
         );
     }

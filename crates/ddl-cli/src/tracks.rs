@@ -10,6 +10,7 @@ use ddl::data::{
     Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
     PlausibilityWarning, Recording, Window,
 };
+use ddl_mcap::TrackTopic;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +24,7 @@ pub(crate) struct TrackOptions {
     /// a pedestrian are 0.4 s apart unless --fps or --dt is given
     ///
     /// Also TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, recognised by extension and first
-    /// lines. `ddl forecast -` reads the lines of a live tracker.
+    /// lines; MCAP files and folders of rosbag2. `ddl forecast -` reads the lines of a live tracker.
     #[arg(value_name = "TRACKS")]
     file: Option<PathBuf>,
     #[command(flatten)]
@@ -49,6 +50,8 @@ pub(crate) struct TrackOptions {
 #[derive(Debug)]
 pub(crate) struct ObservedTracks {
     pub(crate) recording: Recording,
+    /// Its topic in a log.
+    pub(crate) topic: Option<TrackTopic>,
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
     /// A fault that the speeds suggest, such as wrong units or a wrong rate, which give meaningless forecasts.
@@ -98,16 +101,11 @@ impl TrackOptions {
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast, for a run.
     pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<ObservedTracks> {
-        let ReadRecording {
-            recording,
-            clock,
-            guessed,
-            notes,
-            ..
-        } = self.units.or_those_of(run).read(self.file())?;
-        for note in notes.into_iter().chain(guessed) {
+        let read = self.units.or_those_of(run).read(self.file())?;
+        for note in read.notes.iter().chain(&read.guessed) {
             tell(format_args!("note: {note}"));
         }
+        let ReadRecording { recording, clock, .. } = read;
         let mut tracks = self.windows_of(recording.live_tracks());
         if self.last && self.every.is_none() {
             // With clocks of their own, too, the last row is the last moment.
@@ -148,6 +146,7 @@ impl TrackOptions {
         never_forecast.retain(|pedestrian| !is_forecast.contains(pedestrian));
         Ok(ObservedTracks {
             recording,
+            topic: read.topic,
             windows,
             clock,
             warning,

@@ -5,8 +5,9 @@ use crate::small_file;
 use crate::telling::many;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::data::{Clock, ColumnChoice, Format, Homography, Recording, TIME_STEP, parse_columns};
+use ddl::data::{Clock, ColumnChoice, Format, Homography, Recording, TIME_STEP, is_vehicle, parse_columns};
 use ddl::{RunConfig, TrackUnits};
+use ddl_mcap::{TrackTopic, is_log, read_log};
 use std::path::{Path, PathBuf};
 
 /// The units of frame numbers and positions: from options, else from the file, else from the run.
@@ -36,6 +37,9 @@ pub(crate) struct Units {
     /// The unit of positions [default: that in the names of the columns, or m]
     #[arg(long, value_parser = ["m", "cm", "mm", "px"])]
     unit: Option<String>,
+    /// The topic of MCAP files and rosbag2 recordings to read [default: the one with tracks]
+    #[arg(long)]
+    topic: Option<String>,
     /// The units of the run's training.
     #[arg(skip)]
     remembered: TrackUnits,
@@ -44,7 +48,9 @@ pub(crate) struct Units {
 #[derive(Debug)]
 pub(crate) struct ReadRecording {
     /// The recognised format of the file.
-    pub(crate) format: Format,
+    pub(crate) format: &'static str,
+    /// Its topic in a log.
+    pub(crate) topic: Option<TrackTopic>,
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
     /// A note on its frame step, if neither options nor the file give the rate.
@@ -60,6 +66,9 @@ fn columns(text: &str) -> Result<ColumnChoice, String> {
 fn kept(text: &str) -> Result<String, String> {
     ColumnChoice::default().keeping(text).map(|_| text.to_owned())
 }
+
+/// A recording, the name of its format and, of a log, the topic.
+type ReadFile = (Recording, &'static str, Option<TrackTopic>);
 
 /// Rates with a smaller relative difference count as equal.
 const SAME: f64 = 0.005;
@@ -92,12 +101,15 @@ impl Units {
     }
 
     pub(crate) fn are_given(&self) -> bool {
-        let of_columns = self.columns.is_some() || self.keep.is_some() || self.unit.is_some();
+        let of_columns = self.columns.is_some() || self.keep.is_some() || self.unit.is_some() || self.topic.is_some();
         has_rate(&self.rate()) || self.homography.is_some() || of_columns
     }
 
     /// What the options say of the columns of text.
     pub(crate) fn choice(&self) -> anyhow::Result<ColumnChoice> {
+        if self.topic.is_some() {
+            bail!("only MCAP has topics; leave out --topic");
+        }
         let mut choice = self.columns.clone().unwrap_or_default();
         if self.homography()?.is_some() {
             choice = choice.mapped();
@@ -123,7 +135,8 @@ impl Units {
         let columns = self.columns.as_ref().map(|columns| ("columns", columns.to_string()));
         let keep = self.keep.as_ref().map(|text| ("keep", text.clone()));
         let unit = self.unit.as_ref().map(|unit| ("unit", unit.clone()));
-        let of_columns = columns.into_iter().chain(keep).chain(unit);
+        let topic = self.topic.as_ref().map(|topic| ("topic", topic.clone()));
+        let of_columns = columns.into_iter().chain(keep).chain(unit).chain(topic);
         let of_columns = of_columns.map(|(option, value)| format!(" --{option} {}", shell_word(Path::new(&value))));
         rate.unwrap_or_default() + &homography.unwrap_or_default() + &of_columns.collect::<String>()
     }
@@ -142,7 +155,7 @@ impl Units {
     /// Reads the recording in the file, in metres and ticks of its clock. The format is recognised. The file is read
     /// once, so that it may be a pipe.
     pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ReadRecording> {
-        let (recording, format) = self.in_metres(file)?;
+        let (recording, format, topic) = self.in_metres(file)?;
         let place = || file.display().to_string();
         let stated = recording.stated_clock().transpose().with_context(place)?;
         if let (Some(option), Some(_)) = (self.rate_given(), recording.time_unit()) {
@@ -166,6 +179,7 @@ impl Units {
         let recording = recording.on_clock(clock).with_context(place)?;
         Ok(ReadRecording {
             format,
+            topic,
             recording,
             clock,
             guessed,
@@ -210,7 +224,24 @@ impl Units {
         })
     }
 
-    fn in_metres(&self, file: &Path) -> anyhow::Result<(Recording, Format)> {
+    fn in_metres(&self, file: &Path) -> anyhow::Result<ReadFile> {
+        let (recording, format, topic) = self.as_written(file)?;
+        let name = file.file_stem().unwrap_or_default().to_string_lossy();
+        let recording = recording.with_name(&*name);
+        let recording = match self.homography()? {
+            None => recording,
+            Some(homography) => homography
+                .to_ground(&recording)
+                .with_context(|| file.display().to_string())?,
+        };
+        Ok((recording, format, topic))
+    }
+
+    fn as_written(&self, file: &Path) -> anyhow::Result<ReadFile> {
+        if is_log(file) {
+            let tracks = read_log(file, self.topic.as_deref(), self.classes()?)?;
+            return Ok((tracks.recording, "mcap", Some(tracks.topic)));
+        }
         if file.as_os_str() == "-" {
             bail!("only `ddl forecast -` reads standard input; give a file of tracks");
         }
@@ -222,16 +253,24 @@ impl Units {
         }
         let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
         let format = Format::guess_with(file, &bytes, &self.choice()?)?;
-        let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let recording = parse_columns(&bytes, &file.display().to_string(), format, &self.choice()?)?;
-        let recording = recording.with_name(&*name);
-        let recording = match self.homography()? {
-            None => recording,
-            Some(homography) => homography
-                .to_ground(&recording)
-                .with_context(|| file.display().to_string())?,
+        Ok((recording, format.name(), None))
+    }
+
+    /// Which classes of a log are pedestrians.
+    fn classes(&self) -> anyhow::Result<impl Fn(&str) -> bool> {
+        if self.columns.is_some() || self.unit.is_some() {
+            bail!("MCAP has no columns, and its positions are in metres: leave out --columns and --unit");
+        }
+        let kept = match self.keep.as_deref().map(|keep| keep.split_once('=')) {
+            None => None,
+            Some(Some(("class", class))) => Some(class.to_owned()),
+            Some(_) => bail!("of MCAP, --keep chooses a class, as in --keep class=person"),
         };
-        Ok((recording, format))
+        Ok(move |class: &str| match &kept {
+            Some(kept) => class.eq_ignore_ascii_case(kept),
+            None => !is_vehicle(class),
+        })
     }
 
     pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {

@@ -178,6 +178,13 @@ impl Clock {
         tick.ok_or(ClockError::Frame { frame, ticks })
     }
 
+    /// Microseconds at a tick: those of time stamps or, of frames, since frame 0.
+    pub fn microseconds(self, tick: i64) -> i64 {
+        let microseconds = i128::from(tick) * i128::from(STAMPS_A_SECOND) * 2 / (5 * i128::from(self.frame_step));
+        // Below 2^53 ticks of at least 0.4 s / 2^31.
+        microseconds as i64
+    }
+
     /// The step of 0.4 s, in the unit of the file; in seconds for dates.
     pub fn step_number(self) -> FrameNumber {
         match self.count {

@@ -29,7 +29,10 @@ mod write;
 use std::path::Path;
 
 pub use choice::ColumnChoice;
+pub use field::escaped;
 pub use kind::Format;
+pub use numbering::Numbering;
+pub use row_filter::is_vehicle;
 pub use stream::{Frame, FrameReader};
 pub use write::write_recording;
 

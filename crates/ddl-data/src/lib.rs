@@ -105,7 +105,8 @@ pub use ddl_core::{
 pub use error::{DataError, FormatError, RecordingError};
 pub use fold::{Fold, TrainingSplit};
 pub use format::{
-    ColumnChoice, Format, Frame, FrameReader, parse_columns, parse_recording, read_recording, write_recording,
+    ColumnChoice, Format, Frame, FrameReader, Numbering, escaped, is_vehicle, parse_columns, parse_recording,
+    read_recording, write_recording,
 };
 pub use future::Futures;
 pub use homography::{Homography, HomographyError};

@@ -197,6 +197,12 @@ impl Recording {
         &self.notes
     }
 
+    /// The same recording with [`notes`](Self::notes).
+    #[must_use]
+    pub fn with_notes(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
+    }
+
     pub(crate) fn with_observations(
         &self,
         frame_step: i64,

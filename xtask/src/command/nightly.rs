@@ -39,6 +39,8 @@ enum Check {
     Packages,
     /// The wheel for users, and its tests
     Wheel,
+    /// The ROS 2 node against another DDS for a minute: nothing lost, latency
+    Node,
     /// Every page of the documentation in a browser
     Site,
     /// All of these
@@ -84,6 +86,7 @@ impl Check {
             Self::Sanitizer => sanitizer(workspace, words),
             Self::Packages => packages(workspace),
             Self::Wheel => python::Arguments::default().run(workspace),
+            Self::Node => python::check_node_for_long(workspace),
             Self::Site => {
                 docs::build(workspace, docs::ALONE)?;
                 let [site, pictures] = [docs::SITE, "target/screenshots"].map(|folder| workspace.path(folder));

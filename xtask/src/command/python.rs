@@ -75,7 +75,27 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
         format!("#!/bin/sh\nexec {}/python -c '{program}' \"$@\"\n", bin.display()),
     )?;
     run(Command::new("chmod").arg("755").arg(bin.join("ddl")))?;
-    test(workspace, &[])
+    test(workspace, &[])?;
+    run(&mut test_node(workspace, "target/debug/ddl-ros2"))
+}
+
+/// For a minute, and as fast as users have it.
+pub(super) fn check_node_for_long(workspace: &Workspace) -> Result<()> {
+    make_environment(workspace)?;
+    run(&mut workspace.cargo("build --release --package ddl-ros2".split(' ')))?;
+    run(test_node(workspace, "target/release/ddl-ros2")
+        .arg("-rP")
+        .env("DDL_NIGHTLY", "1"))
+}
+
+/// The tests of the ROS 2 node, which need another DDS.
+fn test_node(workspace: &Workspace, program: &str) -> Command {
+    let mut pytest = in_environment(workspace, "python");
+    pytest
+        .args(["-m", "pytest", "--quiet", "--durations", "3"])
+        .arg(workspace.path("crates/ddl-ros2/tests"))
+        .env("DDL_ROS2", workspace.path(program));
+    pytest
 }
 
 /// A new virtual environment with the packages needed for building and testing.

@@ -64,7 +64,7 @@ impl Data {
             writeln!(text, "{}\n  format       {}", file.display(), read.format)?;
             write_summary(&mut text, &summary, recording, *clock)?;
             let mut facts = facts(file, &summary, recording, *clock)?;
-            facts["format"] = read.format.name().into();
+            facts["format"] = read.format.into();
             of_each.push(facts);
             total.add(&summary);
         }

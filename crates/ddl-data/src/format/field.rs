@@ -192,7 +192,8 @@ pub(super) fn quoted(text: &str) -> String {
     escaped(text) + rest
 }
 
-fn escaped(text: &str) -> String {
+/// A text of others with its control characters, which would act on terminals, as escapes.
+pub fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         if letter.is_control() {

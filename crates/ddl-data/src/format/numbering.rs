@@ -7,7 +7,7 @@ use ddl_core::{FRAME_LIMIT, PedestrianId};
 
 /// Assigns numbers to words in order of arrival, from 2^53 on: above all numbers that files may use.
 #[derive(Debug)]
-pub(super) struct Numbering {
+pub struct Numbering {
     numbers: HashMap<Arc<str>, i64>,
     words: VecDeque<Arc<str>>,
     forgotten: i64,
@@ -16,7 +16,7 @@ pub(super) struct Numbering {
 
 impl Numbering {
     /// Remembers at most `most` words; a forgotten word gets a new number.
-    pub(super) fn remembering(most: usize) -> Self {
+    pub fn remembering(most: usize) -> Self {
         Self {
             numbers: HashMap::new(),
             words: VecDeque::new(),
@@ -26,7 +26,7 @@ impl Numbering {
     }
 
     /// The number of a word, and the shared copy of the word.
-    pub(super) fn number(&mut self, word: &str) -> (PedestrianId, Arc<str>) {
+    pub fn number(&mut self, word: &str) -> (PedestrianId, Arc<str>) {
         if let Some((word, &number)) = self.numbers.get_key_value(word) {
             return (PedestrianId(number), Arc::clone(word));
         }

@@ -101,7 +101,7 @@ impl RowFilter {
         if let Some((index, kept)) = self.class {
             let class = &*fields[index];
             let small = class.to_ascii_lowercase();
-            if kept.map_or_else(|| is_one_of(VEHICLES, &small), |kept| !class.eq_ignore_ascii_case(kept)) {
+            if kept.map_or_else(|| is_vehicle(class), |kept| !class.eq_ignore_ascii_case(kept)) {
                 return Some(format!("of class {}", field::quoted(class)));
             }
             if kept.is_none() && !is_one_of(PEOPLE, &small) && self.classes.len() < 2 {
@@ -139,6 +139,11 @@ impl RowFilter {
         let classes = (before[1] < classes).then(|| self.classes_read()).flatten();
         rows.into_iter().chain(classes).collect()
     }
+}
+
+/// Whether a class names something else than people on foot, as `car` does.
+pub fn is_vehicle(class: &str) -> bool {
+    is_one_of(VEHICLES, &class.to_ascii_lowercase())
 }
 
 /// Whether two values are the same word or the same number.

@@ -190,3 +190,15 @@ fn a_stream_goes_on_after_a_time_of_another_kind() {
         assert_eq!(read, numbers, "{text}");
     }
 }
+
+/// By hand: at 7 frames a second a step of 2.8 frames has 14 ticks.
+#[test]
+fn a_tick_has_a_time() {
+    let seven = Clock::with_frame_time(1.0 / 7.0).unwrap();
+    assert_eq!(
+        [-14, 0, 15].map(|tick| seven.microseconds(tick)),
+        [-400_000, 0, 428_571]
+    );
+    let stamps = Clock::with_stamps(TimeUnit::Dates);
+    assert_eq!(stamps.microseconds(1_700_000_000_123_456), 1_700_000_000_123_456);
+}

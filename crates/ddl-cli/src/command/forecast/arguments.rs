@@ -7,6 +7,8 @@ use crate::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use anyhow::bail;
 use clap::Args;
 use ddl::{Ddl, Forecaster as _};
+use ddl_mcap::ForecastLog;
+use std::fs::File;
 
 /// Forecast the next 4.8 s of your own tracks
 #[derive(Debug, Args)]
@@ -18,6 +20,7 @@ use ddl::{Ddl, Forecaster as _};
         tracker | ddl forecast - --fps 10 --memory hall.memory\n  \
         trackers | ddl forecast - --fps 10 --latest --format jsonl\n  \
         ddl forecast tracks.csv --joint --plan robot.csv --format jsonl\n  \
+        ddl forecast drive.mcap --topic /tracks --output forecasts.mcap\n  \
         ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
 pub(crate) struct ForecastCommand {
     #[command(flatten)]
@@ -100,6 +103,16 @@ impl Answer for ForecastCommand {
             }
         }
         Ok(forecasts)
+    }
+
+    fn log(&self, moments: &[Moment<'_>], log: &mut ForecastLog<&mut File>) -> anyhow::Result<()> {
+        if self.format.is_some() {
+            bail!("--format is of text, and --output names MCAP: leave out one of them");
+        }
+        for moment in moments {
+            log.add(moment.window, moment.forecast, self.joint, moment.microseconds())?;
+        }
+        Ok(())
     }
 
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {

@@ -159,6 +159,11 @@ impl<'a> Moment<'a> {
         self.clock.number(self.window.frames()[OBSERVED - 1])
     }
 
+    /// The moment in microseconds.
+    pub(crate) fn microseconds(&self) -> i64 {
+        self.clock.microseconds(self.window.frames()[OBSERVED - 1])
+    }
+
     pub(crate) fn frames(&self) -> Vec<FrameNumber> {
         let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
         let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));

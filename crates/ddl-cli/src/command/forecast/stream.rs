@@ -4,13 +4,15 @@ use crate::command::forecast::live;
 use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::{Machine, ModelChoice};
 use crate::interrupt::Interrupt;
-use crate::output::{file_of, write_parts};
+use crate::output::{file_of, write_file, write_parts};
 use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
 use ddl::{Ddl, DdlError};
+use ddl_mcap::ForecastLog;
+use std::fs::File;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
@@ -28,7 +30,7 @@ pub(crate) struct StreamOptions {
     pub(super) model: ModelChoice,
     #[command(flatten)]
     pub(super) tracks: TrackOptions,
-    /// File to write [default: standard output, also as `-`]
+    /// File to write [default: standard output, also as `-`]; forecasts also as .mcap, for Foxglove and ROS 2
     #[arg(long, short)]
     pub(crate) output: Option<PathBuf>,
     /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
@@ -70,12 +72,17 @@ pub(crate) trait Answer {
         Ok(WindowForecasts::Plain(model.forecast_scenes(windows.windows, None)?))
     }
 
+    /// Adds the answers of the moments to a log.
+    fn log(&self, _moments: &[Moment<'_>], _log: &mut ForecastLog<&mut File>) -> anyhow::Result<()> {
+        bail!("only forecasts are written as MCAP; name another file for --output")
+    }
+
     /// The answers of the moments in order of time. The first text starts with the names of the columns, if the format
     /// has any.
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String>;
 }
 
-/// The answers of a command for these windows.
+/// The answers of a command for these windows, as text.
 pub(super) fn text_of(
     command: &dyn Answer,
     model: &Ddl,
@@ -83,6 +90,19 @@ pub(super) fn text_of(
     clock: Clock,
     state: &mut StreamState,
 ) -> anyhow::Result<String> {
+    answers_of(command, model, windows, clock, state, |moments, state| {
+        command.text(moments, state)
+    })
+}
+
+fn answers_of<T>(
+    command: &dyn Answer,
+    model: &Ddl,
+    windows: SceneWindows<'_>,
+    clock: Clock,
+    state: &mut StreamState,
+    answers: impl FnOnce(&[Moment<'_>], &mut StreamState) -> anyhow::Result<T>,
+) -> anyhow::Result<T> {
     let forecasts = command.forecasts(model, windows, state)?;
     let moments = windows.moments(&forecasts, clock);
     warn_of_violation(&moments, state);
@@ -92,7 +112,7 @@ pub(super) fn text_of(
             .unfamiliar
             .warn("; this warning appears once, but each forecast has its familiarity");
     }
-    command.text(&moments, state)
+    answers(&moments, state)
 }
 
 /// Answers every moment of the tracks.
@@ -108,7 +128,14 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     if stream.latest && !stream.tracks.are_live() {
         bail!("--latest is for tracks as they come; write them to standard input, and give `-` instead of a file");
     }
+    let log = stream.output.as_deref().filter(|path| ddl_mcap::is_mcap(path));
     if stream.tracks.are_live() {
+        if let Some(path) = log {
+            bail!(
+                "{}: MCAP is written from a file of tracks, not from standard input",
+                path.display()
+            );
+        }
         return live::run(command);
     }
     let model = stream.load()?;
@@ -121,13 +148,27 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
         if interrupt.flow().is_break() {
             bail!(DdlError::Interrupted);
         }
-        let windows = SceneWindows { windows, scenes: &[] };
-        let text = text_of(command, &model, windows, observed.clock, &mut state)?;
-        bytes += text.len();
-        lines += text.lines().count();
-        Ok(text)
+        Ok(SceneWindows { windows, scenes: &[] })
     });
-    write_parts(stream.output.as_deref(), parts)?;
+    if let Some(path) = log {
+        write_file(path, |file| {
+            let mut log = ForecastLog::new(file, observed.topic.as_ref())?;
+            for windows in parts {
+                let clock = observed.clock;
+                let add = |moments: &[Moment<'_>], _: &mut StreamState| command.log(moments, &mut log);
+                answers_of(command, &model, windows?, clock, &mut state, add)?;
+            }
+            Ok(log.finish()?)
+        })?;
+    } else {
+        let texts = parts.map(|windows| {
+            let text = text_of(command, &model, windows?, observed.clock, &mut state)?;
+            bytes += text.len();
+            lines += text.lines().count();
+            Ok(text)
+        });
+        write_parts(stream.output.as_deref(), texts)?;
+    }
     state.unfamiliar.warn("");
     stream.warn_of_flood(lines, bytes);
     observed.tell_what_was_estimated();

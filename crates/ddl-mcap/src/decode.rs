@@ -1,0 +1,115 @@
+//! From a message to the pedestrians in it.
+
+use ddl_data::FrameReader;
+use ddl_ros::msg::{Detection3DArray, Header, People, Point, Time, TrackedPersons};
+use ddl_ros::{Message as _, Observed, RosError, SeenPedestrian, read_tracks};
+use mcap::{Channel, Message};
+use serde_json::Value;
+
+/// Types of ROS messages with tracks; where JSON has their list of pedestrians, and in each its name and position.
+const TYPES: [[&str; 4]; 3] = [
+    [Detection3DArray::TYPE, "detections", "/id", "/bbox/center/position"],
+    [People::TYPE, "people", "/name", "/position"],
+    [TrackedPersons::TYPE, "tracks", "/track_id", "/pose/pose/position"],
+];
+const TRACK: &[u8] = b"\"track\"";
+
+/// What is read, for messages to users.
+pub(crate) const READ: &str = "vision_msgs/Detection3DArray, people_msgs/People or \
+    spencer_tracking_msgs/TrackedPersons as cdr or json, and json of {\"track\": {\"p\": 1, \"x\": 2.0, \"y\": 3.0}}";
+
+/// Microseconds of the message itself, and the pedestrians.
+pub(crate) type Decoded = (Option<i64>, Observed);
+
+/// The type of a channel as ROS 2 writes it.
+pub(crate) fn type_name(channel: &Channel<'_>) -> String {
+    let name = channel.schema.as_ref().map_or("", |schema| &schema.name);
+    match name.split_once('/') {
+        Some((package, message)) if !message.contains('/') => format!("{package}/msg/{message}"),
+        _ => name.to_owned(),
+    }
+}
+
+/// The pedestrians; `None` if the message is of a kind without tracks.
+pub(crate) fn decode(message: &Message<'_>) -> Result<Option<Decoded>, String> {
+    let (bytes, name) = (&*message.data, type_name(&message.channel));
+    let layout = TYPES.iter().find(|[known, ..]| *known == name);
+    match (&*message.channel.message_encoding, layout) {
+        ("cdr", Some(_)) => match read_tracks(&name, bytes) {
+            // A time stands in for the one that is missing, in the first field.
+            Err(RosError::NoTime { .. }) => {
+                let stamped = [&bytes[..4], &[1], &bytes[5..]].concat();
+                read_tracks(&name, &stamped).map(|observed| Some((None, observed)))
+            }
+            read => read.map(|observed| Some((Some(observed.header.stamp.microseconds()), observed))),
+        }
+        .map_err(|error| error.to_string()),
+        ("json", Some(layout)) => of_json(bytes, layout).map(Some),
+        ("json", None) => of_lines(bytes),
+        _ => Ok(None),
+    }
+}
+
+/// A ROS message as JSON; of its fields those that are needed.
+fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decoded, String> {
+    let message: Value = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
+    let items = message[*list].as_array().ok_or(format!("there is no list `{list}`"))?;
+    let (occluded, items): (Vec<_>, Vec<_>) = items.iter().partition(|item| item["is_occluded"] == true);
+    let seen = items.into_iter().map(|item| {
+        let coordinate = |axis| item.pointer(position)?[axis].as_f64();
+        let name = item
+            .pointer(name)
+            .filter(|name| name.is_number() || name.as_str().is_some_and(|it| !it.is_empty()));
+        let score = |result: &&Value| result["hypothesis"]["score"].as_f64().unwrap_or(0.0);
+        let results = item["results"].as_array().into_iter().flatten();
+        let likeliest = results.max_by(|a, b| score(a).total_cmp(&score(b)));
+        Some(SeenPedestrian {
+            name: name.map(|name| name.as_str().map_or_else(|| name.to_string(), str::to_owned))?,
+            class: likeliest
+                .and_then(|it| it["hypothesis"]["class_id"].as_str())
+                .unwrap_or_default()
+                .to_owned(),
+            position: Point::from([coordinate("x")?, coordinate("y")?]),
+        })
+    });
+    let pedestrians: Option<_> = seen.collect();
+    let stamp = &message["header"]["stamp"];
+    // As ROS 2, Foxglove and ROS 1 call them.
+    let part = |names: &[&str]| names.iter().find_map(|name| stamp[name].as_i64()).unwrap_or(0);
+    let (seconds, nanoseconds) = (part(&["sec", "secs"]), part(&["nanosec", "nsec", "nsecs"]));
+    let microseconds = seconds.saturating_mul(1_000_000).saturating_add(nanoseconds / 1000);
+    let observed = Observed {
+        header: Header {
+            stamp: Time::of_microseconds(microseconds),
+            frame_id: message["header"]["frame_id"].as_str().unwrap_or_default().to_owned(),
+        },
+        pedestrians: pedestrians.ok_or(format!(
+            "each of `{list}` needs {name} and {position}, x and y in metres"
+        ))?,
+        occluded: occluded.len(),
+    };
+    Ok(((microseconds != 0).then_some(microseconds), observed))
+}
+
+/// JSON as `ddl forecast -` reads it, one or several lines of a moment. A frame is no time.
+fn of_lines(bytes: &[u8]) -> Result<Option<Decoded>, String> {
+    if !bytes.trim_ascii_start().starts_with(b"{") || !bytes.windows(TRACK.len()).any(|part| part == TRACK) {
+        return Ok(None);
+    }
+    let mut reader = FrameReader::new(bytes, "the message");
+    let mut next = || reader.next_frame().map_err(|error| error.to_string());
+    let (Some(frame), None) = (next()?, next()?) else {
+        return Err("a message holds the tracks of one moment".to_owned());
+    };
+    let seen = frame.pedestrians.iter().map(|(id, position)| SeenPedestrian {
+        name: frame.names.of(*id).to_string(),
+        class: String::new(),
+        position: Point::from(*position),
+    });
+    let observed = Observed {
+        header: Header::default(),
+        pedestrians: seen.collect(),
+        occluded: 0,
+    };
+    Ok(Some((reader.time_unit().map(|_| frame.number), observed)))
+}

@@ -1,0 +1,205 @@
+//! The tracks of a topic, as a recording.
+
+use crate::decode::{Decoded, READ, decode, type_name};
+use crate::error::LogError;
+use crate::files::files;
+use crate::messages::Messages;
+use ddl_core::{FRAME_LIMIT, PedestrianId};
+use ddl_data::{COORDINATE_LIMIT, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped};
+use mcap::Channel;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Topics that an error lists.
+const MOST_LISTED: usize = 20;
+/// Bytes of a pedestrian's name.
+const LONGEST_NAME: usize = 256;
+
+/// The tracks of a log.
+#[derive(Debug)]
+pub struct LoggedTracks {
+    /// Its frame numbers are times in microseconds; its notes tell what was chosen, assumed and left out.
+    pub recording: Recording,
+    /// Where they are from.
+    pub topic: TrackTopic,
+}
+
+/// A topic with tracks.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TrackTopic {
+    pub(crate) files: Vec<PathBuf>,
+    pub(crate) name: String,
+}
+
+/// Reads the tracks of an MCAP file, or of the folder of a rosbag2 recording: those of the topic that is `asked` for or,
+/// without it, of the one topic that holds tracks. `keep` chooses the classes that are pedestrians.
+///
+/// Messages have the time of their header, or that of the log where they have none. Of a file whose end is missing,
+/// the whole chunks are read.
+///
+/// # Errors
+/// A file cannot be read; a message of the topic, or what leads to it, is damaged or of an unknown kind; no topic or
+/// several hold tracks.
+pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -> Result<LoggedTracks, LogError> {
+    let (files, mut topics, mut notes) = (files(path)?, BTreeMap::<String, Topic>::new(), Vec::new());
+    for file in &files {
+        let (file_name, mut time) = (file.display(), 0.0);
+        let mut messages = Messages::open(file).map_err(LogError::at(&file_name))?;
+        while let Some(message) = messages.next().map_err(|problem| {
+            let place = format!("{file_name}, after {time:.6} s");
+            LogError::at(place)(problem)
+        })? {
+            time = message.log_time as f64 / 1e9;
+            let channel = &message.channel;
+            let topic = topics
+                .entry(channel.topic.clone())
+                .or_insert_with(|| Topic::of(channel));
+            topic.messages += 1;
+            if asked.is_none_or(|asked| asked == channel.topic) {
+                let decoded = decode(&message);
+                let added = decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep));
+                added.map_err(|problem| {
+                    let (topic, number) = (&channel.topic, message.sequence);
+                    LogError::at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))(problem)
+                })?;
+            }
+        }
+        if messages.is_cut {
+            notes.push(format!(
+                "{file_name} is cut off: what is whole was read, until {time:.6} s"
+            ));
+        }
+    }
+    let (name, topic) = choose(topics, asked).map_err(LogError::at(path.display()))?;
+    notes.insert(0, topic.words(&name));
+    let recording = topic
+        .recording()
+        .map_err(LogError::at(format!("{}, topic {name}", path.display())))?;
+    Ok(LoggedTracks {
+        recording: recording.with_notes(notes.iter().map(|note| escaped(note)).collect()),
+        topic: TrackTopic { files, name },
+    })
+}
+
+/// The topic that was asked for, or the one with tracks.
+fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(String, Topic), String> {
+    let listed = |wanted: fn(&Topic) -> bool| {
+        let some = topics.iter().filter(|(_, topic)| wanted(topic)).take(MOST_LISTED);
+        let some = some.map(|(name, topic)| format!("{name} ({}, {} messages)", topic.kind, topic.messages));
+        some.collect::<Vec<_>>().join(", ")
+    };
+    let holds_tracks = |topic: &Topic| topic.is_logged.is_some();
+    let mut found = topics
+        .iter()
+        .filter(|(_, topic)| holds_tracks(topic))
+        .map(|(name, _)| name.clone());
+    match (asked, found.next(), found.next()) {
+        (_, Some(name), None) => Ok(topics.remove_entry(&name).unwrap_or_default()),
+        (None, Some(_), _) => Err(format!("choose a topic by --topic: {}", listed(holds_tracks))),
+        _ if topics.is_empty() => Err("there is no message; is the file empty or cut off?".to_owned()),
+        (None, None, _) => Err(format!("no tracks in {}; read is {READ}", listed(|_| true))),
+        (Some(asked), ..) => Err(match topics.get(asked) {
+            Some(topic) => format!("topic {asked} holds no tracks but {}; read is {READ}", topic.kind),
+            None => format!("no message of topic {asked}; there are {}", listed(|_| true)),
+        }),
+    }
+}
+
+/// What is known of a topic.
+#[derive(Debug, Default)]
+struct Topic {
+    kind: String,
+    messages: u64,
+    rows: Vec<Observation>,
+    numbering: Option<Numbering>,
+    words: BTreeMap<PedestrianId, Arc<str>>,
+    frame_id: Option<String>,
+    /// Whether the times are those of the log; `None` without tracks.
+    is_logged: Option<bool>,
+    left_out: BTreeMap<String, usize>,
+}
+
+impl Topic {
+    fn of(channel: &Channel<'_>) -> Self {
+        Self {
+            kind: format!("{} as {}", type_name(channel), channel.message_encoding),
+            ..Self::default()
+        }
+    }
+
+    fn words(&self, name: &str) -> String {
+        let (kind, messages, frame_id) = (&self.kind, self.messages, self.frame_id.as_deref().unwrap_or_default());
+        let logged = if self.is_logged == Some(true) {
+            "of the log"
+        } else {
+            "of the messages"
+        };
+        let left_out = self
+            .left_out
+            .iter()
+            .map(|(what, count)| format!("; {count} rows left out: {what}"));
+        let left_out: String = left_out.collect();
+        format!(
+            "topic {name} ({kind}, {messages} messages): times {logged}, positions in the frame {frame_id:?}{left_out}"
+        )
+    }
+
+    /// Adds the rows of a message.
+    fn add(&mut self, decoded: Option<Decoded>, log_time: u64, keep: impl Fn(&str) -> bool) -> Result<(), String> {
+        let Some((time, mut observed)) = decoded else {
+            return Ok(());
+        };
+        if *self.is_logged.get_or_insert(time.is_none()) != time.is_none() {
+            return Err("header.stamp is 0 in some messages and a time in others".to_owned());
+        }
+        let frame_id = self.frame_id.get_or_insert_with(|| observed.header.frame_id.clone());
+        if *frame_id != observed.header.frame_id {
+            let other = &observed.header.frame_id;
+            return Err(format!(
+                "positions in the frame {other:?}, but before in {frame_id:?}; record them in one"
+            ));
+        }
+        if observed.occluded > 0 {
+            *self.left_out.entry("occluded".to_owned()).or_default() += observed.occluded;
+        }
+        observed.pedestrians.retain_mut(|seen| {
+            seen.name = escaped(&seen.name);
+            let is_kept = keep(&seen.class);
+            if !is_kept {
+                *self.left_out.entry(format!("class {}", seen.class)).or_default() += 1;
+            }
+            is_kept
+        });
+        let (seen, names) = observed.numbered(self.numbering.get_or_insert_with(|| Numbering::remembering(usize::MAX)));
+        for (id, position) in seen {
+            let name = names.of(id).to_string();
+            if name.len() > LONGEST_NAME || position.iter().any(|c| c.abs() > COORDINATE_LIMIT) {
+                return Err(format!("pedestrian {name} at {position:?}: beyond 256 bytes or 1e7 m"));
+            }
+            if id.0 >= FRAME_LIMIT {
+                self.words.entry(id).or_insert_with(|| name.into());
+            }
+            self.rows
+                .push(Observation::new(time.unwrap_or((log_time / 1000) as i64), id, position));
+        }
+        Ok(())
+    }
+
+    fn recording(self) -> Result<Recording, String> {
+        let recording = Recording::in_usual_step("log", self.rows).map_err(|error| match error {
+            RecordingError::Duplicate { pedestrian, frame } => {
+                let name = self
+                    .words
+                    .get(&pedestrian)
+                    .map_or_else(|| pedestrian.to_string(), ToString::to_string);
+                let time = frame as f64 / 1e6;
+                format!("pedestrian {name} is there twice at {time:.6} s; record one tracker to a topic")
+            }
+            other => other.to_string(),
+        });
+        Ok(recording?
+            .with_words(self.words)
+            .with_time_unit(Some(TimeUnit::Seconds)))
+    }
+}

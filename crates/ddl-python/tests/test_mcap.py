@@ -1,0 +1,188 @@
+"""MCAP files and rosbag2 recordings by the programs of others: read, and written for them."""
+
+import csv
+import io
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import run
+from mcap.reader import make_reader
+from mcap.writer import CompressionType, Writer
+from mcap_ros2.decoder import DecoderFactory
+from rosbags.highlevel import AnyReader
+from rosbags.rosbag2 import StoragePlugin
+from rosbags.rosbag2 import Writer as BagWriter
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+PEOPLE = "people_msgs/msg/People"
+PERSON_DEFINITION = """string name
+geometry_msgs/Point position
+geometry_msgs/Point velocity
+float64 reliability
+string[] tagnames
+string[] tags
+"""
+PEOPLE_DEFINITION = "std_msgs/Header header\npeople_msgs/Person[] people\n"
+LATE = 5_000_000  # nanoseconds from a message to its entry in the log
+
+
+@pytest.fixture(scope="module")
+def store():
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    store.register(get_types_from_msg(PERSON_DEFINITION, "people_msgs/msg/Person"))
+    store.register(get_types_from_msg(PEOPLE_DEFINITION, PEOPLE))
+    return store
+
+
+def rows():
+    """Three pedestrians at 10 Hz for 6 s: time, name, x, y."""
+    for k in range(60):
+        t = 1_700_000_000 + 0.1 * k
+        yield t, [("p1", 0.12 * k, 0.0), ("p2", 9 - 0.11 * k, 0.8), ("p3", 3.0, 0.09 * k - 2)]
+
+
+def messages(store):
+    """The same as messages: nanoseconds and CDR."""
+    kinds = store.types
+    for t, people in rows():
+        nanoseconds = round(t * 10) * 100_000_000
+        stamp = kinds["builtin_interfaces/msg/Time"](nanoseconds // 10**9, nanoseconds % 10**9)
+        point = kinds["geometry_msgs/msg/Point"]
+        persons = [
+            kinds["people_msgs/msg/Person"](
+                name=name,
+                position=point(x, y, 0.0),
+                velocity=point(0.0, 0.0, 0.0),
+                reliability=1.0,
+                tagnames=[],
+                tags=[],
+            )
+            for name, x, y in people
+        ]
+        message = kinds[PEOPLE](kinds["std_msgs/msg/Header"](stamp, "odom"), persons)
+        yield nanoseconds, bytes(store.serialize_cdr(message, PEOPLE))
+
+
+@pytest.fixture(scope="module")
+def folder(store, tmp_path_factory):
+    """The tracks as csv, as bags of both kinds and as bare MCAP files, and what the program says of the csv."""
+    folder = tmp_path_factory.mktemp("logs")
+    lines = ["time,pedestrian,x,y"]
+    lines += [f"{t:.1f},{name},{x!r},{y!r}" for t, people in rows() for name, x, y in people]
+    (folder / "tracks.csv").write_text("\n".join(lines) + "\n")
+    for name, storage in [("bag", StoragePlugin.MCAP), ("sqlite", StoragePlugin.SQLITE3)]:
+        with BagWriter(folder / name, version=9, storage_plugin=storage) as bag:
+            topic = bag.add_connection("/people", PEOPLE, typestore=store)
+            other = bag.add_connection("/chatter", "std_msgs/msg/String", typestore=store)
+            for nanoseconds, cdr in messages(store):
+                bag.write(topic, nanoseconds + LATE, cdr)
+                bag.write(other, nanoseconds, b"\0\1\0\0\3\0\0\0hi\0")
+    for compression in [CompressionType.ZSTD, CompressionType.LZ4, CompressionType.NONE]:
+        with (folder / f"{compression.name}.mcap").open("wb") as file:
+            writer = Writer(file, compression=compression, chunk_size=4000)
+            writer.start()
+            topic = writer.register_channel("/people", "cdr", writer.register_schema(PEOPLE, "ros2msg", b""))
+            for nanoseconds, cdr in messages(store):
+                writer.add_message(topic, nanoseconds + LATE, cdr, nanoseconds)
+            writer.finish()
+    return folder
+
+
+def table(text):
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+@pytest.fixture(scope="module")
+def expected(program, folder):
+    return table(run(program, "forecast", folder / "tracks.csv", check=True).stdout)
+
+
+@pytest.mark.parametrize("log", ["bag", "bag/bag.mcap", "ZSTD.mcap", "LZ4.mcap", "NONE.mcap"])
+def test_logs_give_the_forecasts_of_the_same_csv(program, folder, expected, log):
+    done = run(program, "forecast", folder / log, check=True)
+    assert table(done.stdout) == expected
+    told = "topic /people (people_msgs/msg/People as cdr, 60 messages): times of the messages, positions in the frame"
+    assert told + ' "odom"' in done.stderr
+
+
+def test_every_message_of_a_written_file_is_decoded(program, folder, expected, store):
+    out = folder / "out.mcap"
+    run(program, "forecast", folder / "bag", "-o", out, check=True)
+    counts, found = {}, {}
+    with out.open("rb") as file:
+        reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
+        summary = reader.get_summary()
+        for schema, channel, message, decoded in reader.iter_decoded_messages():
+            counts[schema.name] = counts.get(schema.name, 0) + 1
+            if channel.topic == "/people":
+                stamp = decoded.header.stamp
+                assert message.log_time == stamp.sec * 10**9 + stamp.nanosec
+            if channel.topic == "/ddl/forecasts":
+                assert decoded.header.frame_id == "odom" and decoded.time_step == 0.4
+                for one in decoded.pedestrians:
+                    for k, hypothesis in enumerate(one.hypotheses):
+                        place = list(zip(hypothesis.x, hypothesis.y, strict=True))
+                        found[message.log_time, one.id, k] = (hypothesis.weight, place)
+    moments = len({row["observed_until"] for row in expected})
+    assert summary.statistics.message_count == sum(counts.values())
+    assert counts == {
+        PEOPLE: 60,
+        "ddl_msgs/msg/Forecasts": moments,
+        "visualization_msgs/msg/MarkerArray": moments,
+        "nav_msgs/msg/Path": 3 * moments,
+    }
+    assert 12 * len(found) == len(expected)
+    for index, row in enumerate(expected):
+        moment = round(float(row["observed_until"]) * 10) * 100_000_000
+        weight, place = found[moment, row["pedestrian"], int(row["hypothesis"])]
+        x, y = place[index % 12]
+        assert weight == float(row["weight"])
+        assert max(abs(x - float(row["x"])), abs(y - float(row["y"]))) < 5.1e-5  # the table is rounded
+
+    again = run(program, "forecast", out, "--topic", "/people", check=True)
+    assert table(again.stdout) == expected
+    with AnyReader([out]) as bag:
+        assert {connection.topic for connection in bag.connections} >= {"/people", "/ddl/markers"}
+        for connection, _, raw in bag.messages():
+            bag.deserialize(raw, connection.msgtype)
+
+
+def test_what_cannot_be_read_is_named(program, folder, tmp_path):
+    def error(*arguments):
+        done = run(program, *arguments)
+        assert done.returncode == 1 and not done.stdout
+        return done.stderr
+
+    assert "rosbags-convert --src BAG --dst NEW --dst-storage mcap" in error("forecast", folder / "sqlite")
+    assert "no message of topic /tracks; there are" in error("forecast", folder / "bag", "--topic", "/tracks")
+    with (tmp_path / "two.mcap").open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        kind = writer.register_schema("", "", b"")
+        topics = [writer.register_channel(topic, "json", kind) for topic in ["/a", "/b"]]
+        for k in range(8):
+            for topic in topics:
+                writer.add_message(topic, k * 400_000_000, b'{"track": {"f": 1, "p": 1, "x": 0.5, "y": 2}}', 0, k)
+        writer.add_message(topics[1], 4_000_000_000, b'{"track": {"f": 1, "p": 1, "x": "left", "y": 2}}', 0, 8)
+        writer.finish()
+    assert "topic /b, message 8 at 4.000000 s: the message, line 1: track.x must be" in error("data", tmp_path)
+    assert "times of the log" in run(program, "data", tmp_path, "--topic", "/a", check=True).stderr
+    whole = (folder / "ZSTD.mcap").read_bytes()
+    (tmp_path / "cut.mcap").write_bytes(whole[: len(whole) // 2])
+    assert "cut.mcap is cut off" in run(program, "data", tmp_path / "cut.mcap", check=True).stderr
+    shutil.rmtree(tmp_path)
+
+
+def test_a_csv_is_written_as_mcap_too(program, folder):
+    out = folder / "of_csv.mcap"
+    run(program, "forecast", folder / "tracks.csv", "--last", "--joint", "-o", out, check=True)
+    with Path(out).open("rb") as file:
+        reader = make_reader(file, decoder_factories=[DecoderFactory()])
+        [forecast] = [it.decoded_message for it in reader.iter_decoded_messages(topics=["/ddl/forecasts"])]
+    assert forecast.joint and forecast.header.frame_id == "map"
+    assert [one.id for one in forecast.pedestrians] == ["p1", "p2", "p3"]
+    assert (
+        "only forecasts are written as MCAP"
+        in run(program, "occupancy", folder / "tracks.csv", "--last", "-o", folder / "grid.mcap").stderr
+    )

@@ -1,0 +1,148 @@
+//! Observed pedestrians, from the three messages in which trackers publish them.
+
+use crate::cdr::{Message, read};
+use crate::error::RosError;
+use crate::msg::{Detection3DArray, Header, People, Point, TrackedPersons};
+use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position, is_frame};
+use ddl_data::Numbering;
+use std::collections::BTreeMap;
+
+/// The pedestrians of one message.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observed {
+    /// The moment, and the frame of the positions.
+    pub header: Header,
+    /// In the order of the message.
+    pub pedestrians: Vec<SeenPedestrian>,
+    /// Number of tracks that are left out because the tracker only guessed where they are (`is_occluded`).
+    pub occluded: usize,
+}
+
+impl Observed {
+    /// Numbers and places (m) of the pedestrians, and the names of those that are not named by a number.
+    pub fn numbered(&self, numbering: &mut Numbering) -> (Vec<(PedestrianId, Position)>, PedestrianNames) {
+        let mut words = BTreeMap::new();
+        let seen = self.pedestrians.iter().map(|SeenPedestrian { name, position, .. }| {
+            let id = match PedestrianName::of_text(name) {
+                PedestrianName::Number(number) if is_frame(number) => PedestrianId(number),
+                _ => {
+                    let (id, word) = numbering.number(name);
+                    words.insert(id, word);
+                    id
+                }
+            };
+            (id, [position.x, position.y])
+        });
+        (seen.collect(), PedestrianNames::new(words))
+    }
+}
+
+/// One pedestrian of a message.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeenPedestrian {
+    /// Its id or name; never empty.
+    pub name: String,
+    /// The likeliest class; empty if the message has none.
+    pub class: String,
+    /// Position (m) in the frame of the header.
+    pub position: Point,
+}
+
+/// A message with tracks.
+pub trait Tracks: Message {
+    /// Its pedestrians.
+    ///
+    /// # Errors
+    /// The header has no time, a pedestrian has no id, a coordinate is not finite.
+    fn observed(self) -> Result<Observed, RosError>;
+}
+
+/// Reads the pedestrians of a message of a type such as `people_msgs/msg/People`.
+///
+/// # Errors
+/// The type is none of tracks; as [`read`]; as [`Tracks::observed`].
+pub fn read_tracks(type_name: &str, cdr: &[u8]) -> Result<Observed, RosError> {
+    match type_name {
+        Detection3DArray::TYPE => read::<Detection3DArray>(cdr)?.observed(),
+        People::TYPE => read::<People>(cdr)?.observed(),
+        TrackedPersons::TYPE => read::<TrackedPersons>(cdr)?.observed(),
+        _ => Err(RosError::UnknownType {
+            type_name: type_name.to_owned(),
+            known: [Detection3DArray::TYPE, People::TYPE, TrackedPersons::TYPE].join(", "),
+        }),
+    }
+}
+
+impl Tracks for Detection3DArray {
+    fn observed(self) -> Result<Observed, RosError> {
+        let detections = self.detections.into_iter();
+        let seen = detections.map(|detection| {
+            let results = detection.results.into_iter().map(|result| result.hypothesis);
+            let likeliest = results.max_by(|a, b| a.score.total_cmp(&b.score));
+            SeenPedestrian {
+                name: detection.id,
+                class: likeliest.map(|hypothesis| hypothesis.class_id).unwrap_or_default(),
+                position: detection.bbox.center.position,
+            }
+        });
+        checked::<Self>(self.header, seen.collect(), ["detections", "id"])
+    }
+}
+
+impl Tracks for People {
+    fn observed(self) -> Result<Observed, RosError> {
+        let seen = self.people.into_iter().map(|person| SeenPedestrian {
+            name: person.name,
+            class: String::new(),
+            position: person.position,
+        });
+        checked::<Self>(self.header, seen.collect(), ["people", "name"])
+    }
+}
+
+impl Tracks for TrackedPersons {
+    fn observed(self) -> Result<Observed, RosError> {
+        let all = self.tracks.len();
+        let tracks = self.tracks.into_iter().filter(|track| !track.is_occluded);
+        let seen: Vec<_> = tracks
+            .map(|track| SeenPedestrian {
+                name: track.track_id.to_string(),
+                class: String::new(),
+                position: track.pose.pose.position,
+            })
+            .collect();
+        let occluded = all - seen.len();
+        let observed = checked::<Self>(self.header, seen, ["tracks", "track_id"])?;
+        Ok(Observed { occluded, ..observed })
+    }
+}
+
+fn checked<M: Message>(
+    header: Header,
+    pedestrians: Vec<SeenPedestrian>,
+    [field, id]: [&'static str; 2],
+) -> Result<Observed, RosError> {
+    let type_name = M::TYPE;
+    if header.stamp.microseconds() == 0 {
+        return Err(RosError::NoTime { type_name });
+    }
+    if let Some(index) = pedestrians.iter().position(|seen| seen.name.is_empty()) {
+        return Err(RosError::NoId {
+            type_name,
+            field,
+            index,
+            id,
+        });
+    }
+    let coordinates = |seen: &SeenPedestrian| [seen.position.x, seen.position.y, seen.position.z];
+    let mut seen = pedestrians.iter();
+    if let Some(seen) = seen.find(|seen| !coordinates(seen).into_iter().all(f64::is_finite)) {
+        let (name, place) = (seen.name.clone(), coordinates(seen).map(|metres| metres.to_string()));
+        return Err(RosError::Position { type_name, name, place });
+    }
+    Ok(Observed {
+        header,
+        pedestrians,
+        occluded: 0,
+    })
+}

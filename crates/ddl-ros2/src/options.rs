@@ -1,0 +1,115 @@
+//! The options, which are the parameters of the node.
+
+use clap::Parser;
+use clap::builder::PossibleValuesParser;
+use ddl::scene::Area;
+use ddl_ros::Message as _;
+use ddl_ros::msg::{Detection3DArray, People, TrackedPersons};
+use nalgebra::{Isometry3, Translation3, UnitQuaternion};
+use std::net::IpAddr;
+use std::path::PathBuf;
+
+/// Forecast pedestrians in ROS 2: subscribe to tracks, publish where they will be in the next 4.8 s
+#[derive(Debug, Parser)]
+#[command(name = "ddl-ros2", version, allow_negative_numbers = true)]
+pub(crate) struct Options {
+    /// Topic of the tracks
+    #[arg(long, default_value = "/tracks")]
+    pub(crate) topic: String,
+    /// Type of its messages
+    #[arg(long, default_value = Detection3DArray::TYPE)]
+    #[arg(value_parser = PossibleValuesParser::new([Detection3DArray::TYPE, People::TYPE, TrackedPersons::TYPE]))]
+    pub(crate) r#type: String,
+    /// Only detections whose likeliest class this is, such as person
+    #[arg(long)]
+    pub(crate) class: Option<String>,
+    /// Name of the node; its topics begin with it
+    #[arg(long, default_value = "ddl")]
+    pub(crate) name: String,
+    /// Frame that does not move, in which forecasts are made
+    #[arg(long, default_value = "map")]
+    pub(crate) frame: String,
+    /// Place of the frame of the tracks in the fixed frame, instead of /tf: metres and radians
+    #[arg(long, value_name = "X,Y,Z,YAW,PITCH,ROLL", value_parser = transform)]
+    pub(crate) transform: Option<Isometry3<f64>>,
+    /// Oldest transform of /tf that is used where none is newer than the tracks, seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
+    pub(crate) transform_age: f64,
+    /// Model: the directory of a run, or a packed file [default: the built-in one]
+    #[arg(long)]
+    pub(crate) model: Option<PathBuf>,
+    /// Forecast joint futures of all pedestrians
+    #[arg(long)]
+    pub(crate) joint: bool,
+    /// Also publish grids of the probability that somebody is there, this many seconds ahead: 0.8,1.6
+    #[arg(long, value_name = "SECONDS,...", value_delimiter = ',', requires = "joint")]
+    pub(crate) grids: Vec<f64>,
+    /// Side of a cell of the grids, metres
+    #[arg(long, default_value_t = 0.1, value_parser = positive)]
+    pub(crate) cell: f64,
+    /// Lowest x and y, largest x and y of the grids, metres [default: all paths, and 1 m around them]
+    #[arg(long, value_name = "X,Y,X,Y", value_parser = corners)]
+    pub(crate) area: Option<[f64; 4]>,
+    /// Most forecasts a second [default: one for each message]
+    #[arg(long, value_name = "HZ", value_parser = positive)]
+    pub(crate) rate: Option<f64>,
+    /// File of the paths that this place has seen, for a fixed sensor; created if missing
+    #[arg(long, value_name = "FILE")]
+    pub(crate) memory: Option<PathBuf>,
+    /// Oldest last row of a pedestrian that is still forecast, seconds
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    pub(crate) max_age: Option<f64>,
+    /// Ask the tracker to send lost messages again; one that is best effort is then not heard
+    #[arg(long)]
+    pub(crate) reliable: bool,
+    /// Most messages that wait
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) depth: u16,
+    /// DDS domain
+    #[arg(long, env = "ROS_DOMAIN_ID", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=232))]
+    pub(crate) domain: u16,
+    /// Address of the network interface to use [default: all]
+    #[arg(long, value_name = "IP")]
+    pub(crate) interface: Vec<IpAddr>,
+    /// Threads that compute [default: as many as processor cores]
+    #[arg(long)]
+    pub(crate) threads: Option<usize>,
+}
+
+impl Options {
+    /// The area of the grids, if it is given.
+    pub(crate) fn fixed_area(&self) -> anyhow::Result<Option<Area>> {
+        let area = self
+            .area
+            .map(|[x, y, to_x, to_y]| Area::new([x, y], [to_x, to_y], self.cell));
+        Ok(area.transpose()?)
+    }
+}
+
+fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+    let numbers = numbers
+        .ok()
+        .filter(|numbers| numbers.iter().all(|number: &f64| number.is_finite()));
+    let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
+    numbers.ok_or_else(|| format!("give {N} numbers with commas between them"))
+}
+
+fn corners(text: &str) -> Result<[f64; 4], String> {
+    numbers(text)
+}
+
+fn transform(text: &str) -> Result<Isometry3<f64>, String> {
+    let [x, y, z, yaw, pitch, roll] = numbers(text)?;
+    let rotation = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+    Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let [number] = numbers(text)?;
+    if number > 0.0 {
+        Ok(number)
+    } else {
+        Err("give a number above 0".to_owned())
+    }
+}

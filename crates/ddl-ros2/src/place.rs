@@ -1,0 +1,153 @@
+//! The place that is watched: its tracks, its memory, its forecasts.
+
+use crate::options::Options;
+use crate::tell;
+use anyhow::ensure;
+use ddl::data::{Clock, Completeness, LiveTracks, Numbering, PedestrianNames, TimeUnit, Window};
+use ddl::{
+    AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, LiveScenes, MemoryFile, ModelSource,
+};
+use ddl_ros::Observed;
+use ddl_ros::msg::Header;
+
+/// Names of pedestrians that keep their numbers.
+const MOST_NAMES: usize = 100_000;
+
+pub(crate) struct Place {
+    model: Ddl,
+    /// One scene, without a name.
+    scenes: LiveScenes,
+    regions: AdaptiveRegions,
+    file: Option<MemoryFile>,
+    joint: bool,
+    numbering: Numbering,
+    names: PedestrianNames,
+    /// Microseconds of the last frame.
+    last: Option<i64>,
+    /// The frame to forecast next.
+    moment: Option<Header>,
+}
+
+/// The answer to a frame.
+pub(crate) struct Answer {
+    pub(crate) header: Header,
+    /// `None` if nobody is observed well enough.
+    pub(crate) forecast: Option<(Window, Forecast)>,
+}
+
+impl Place {
+    pub(crate) fn open(options: &Options) -> anyhow::Result<Self> {
+        let device = DeviceChoice::Cpu;
+        ddl::prepare(device, options.threads)?;
+        let builtin = ModelSource::Builtin(BuiltinModel::default());
+        let source = options.model.as_deref().map_or(builtin, ModelSource::named);
+        let tracks = LiveTracks::with_clock(Clock::with_stamps(TimeUnit::Seconds))
+            .with_completeness(Completeness::Partial)
+            .with_max_age(options.max_age)
+            .with_interval(options.rate.map_or(0.0, |rate| 1.0 / rate));
+        let mut place = Self {
+            model: Ddl::open(&source, device)?,
+            scenes: LiveScenes::new(tracks).latest_only(),
+            regions: AdaptiveRegions::default(),
+            file: None,
+            joint: options.joint,
+            numbering: Numbering::remembering(MOST_NAMES),
+            names: PedestrianNames::default(),
+            last: None,
+            moment: None,
+        };
+        if let Some(path) = &options.memory {
+            let (file, memory) = MemoryFile::open(path)?;
+            place.scenes.remember(None, &place.model, memory)?;
+            place.file = Some(file);
+        }
+        Ok(place)
+    }
+
+    /// Adds a frame in fixed coordinates. Returns the number of rows that do not fit their track.
+    pub(crate) fn observe(&mut self, observed: &Observed) -> anyhow::Result<usize> {
+        let time = observed.header.stamp.microseconds();
+        if let Some(last) = self.last
+            && time <= last
+        {
+            let [time, last] = [time, last].map(|time| time as f64 / 1e6);
+            ensure!(
+                last - time > LiveTracks::LONGEST_GAP,
+                "tracks of {time} s come after those of {last} s; a tracker must publish in order of time"
+            );
+            tell(&format!(
+                "note: time goes back from {last} s to {time} s; all tracks begin anew"
+            ));
+            self.regions.clear();
+            if let Some(place) = self.scenes.forget(None) {
+                self.scenes.remember(None, &self.model, Some(place.memory().clone()))?;
+            }
+        }
+        let (seen, newer) = observed.numbered(&mut self.numbering);
+        self.scenes.observe(None, time, seen)?;
+        self.last = Some(time);
+        self.names = self.names.updated(&newer, |_| true);
+        let tracks = self.scenes.tracks(None);
+        if tracks.is_some_and(LiveTracks::is_moment) {
+            self.moment = Some(observed.header.clone());
+        }
+        Ok(tracks.map_or(0, |tracks| tracks.misfits().len()))
+    }
+
+    /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame.
+    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<Answer>> {
+        let Some(header) = self.moment.take() else {
+            return Ok(None);
+        };
+        let forecast = match self.scenes.next_batch(LiveScenes::BATCH).windows.pop() {
+            None => None,
+            Some(window) if self.joint => {
+                let forecast = self
+                    .model
+                    .forecast_scenes(std::slice::from_ref(&window), None)?
+                    .remove(0);
+                Some((window, forecast))
+            }
+            Some(window) => {
+                let forecast = self.model.forecast(&window)?;
+                let adapted = self.regions.adapt(&window, forecast);
+                Some((window, adapted))
+            }
+        };
+        let named = forecast.map(|(window, forecast)| {
+            self.names = self
+                .names
+                .updated(&PedestrianNames::default(), |id| window.pedestrians().contains(&id));
+            (window.with_names(self.names.clone()), forecast)
+        });
+        Ok(Some(Answer {
+            header,
+            forecast: named,
+        }))
+    }
+
+    /// Number of frames that were skipped.
+    pub(crate) fn skipped(&self) -> u64 {
+        self.scenes.dropped()
+    }
+
+    /// Writes the memory, if a minute has passed.
+    pub(crate) fn save(&mut self) -> anyhow::Result<()> {
+        if let (Some(file), Some(place)) = (&mut self.file, self.scenes.place(None))
+            && file.is_due()
+        {
+            file.write(place)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the memory for the last time.
+    pub(crate) fn close(mut self) -> anyhow::Result<()> {
+        if let (Some(file), Some(place)) = (&mut self.file, self.scenes.place(None))
+            && let Some(reason) = file.end(place.clone())?
+        {
+            tell(&format!("warning: {reason}"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,147 @@
+//! Where frames are in the fixed frame: the transforms of `/tf` and `/tf_static`, or one that is given.
+
+use anyhow::{Error, anyhow, bail, ensure};
+use ddl_ros::msg::{Header, Point, TfMessage};
+use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
+use std::collections::{BTreeMap, VecDeque};
+
+/// Microseconds for which transforms are kept.
+const KEPT: i64 = 10_000_000;
+
+/// The transforms known so far.
+#[derive(Debug)]
+pub(crate) struct Transforms {
+    fixed_frame: String,
+    given: Option<Isometry3<f64>>,
+    /// Microseconds that a transform holds on.
+    holds: i64,
+    /// Each frame in its parent.
+    frames: BTreeMap<String, Link>,
+}
+
+#[derive(Debug)]
+struct Link {
+    parent: String,
+    is_static: bool,
+    /// In order of time (microseconds).
+    poses: VecDeque<(i64, Isometry3<f64>)>,
+}
+
+impl Transforms {
+    pub(crate) fn new(fixed_frame: &str, given: Option<Isometry3<f64>>, holds: f64) -> Self {
+        Self {
+            fixed_frame: name(fixed_frame).to_owned(),
+            given,
+            holds: (1e6 * holds) as i64,
+            frames: BTreeMap::new(),
+        }
+    }
+
+    /// Adds all transforms of a message but those that are none.
+    pub(crate) fn add(&mut self, message: TfMessage, is_static: bool) -> anyhow::Result<()> {
+        let mut added = Ok(());
+        for stamped in message.transforms {
+            let (frame, parent) = (name(&stamped.child_frame_id), name(&stamped.header.frame_id));
+            let (to, turned) = (stamped.transform.translation, stamped.transform.rotation);
+            let turned = Quaternion::new(turned.w, turned.x, turned.y, turned.z);
+            let Some(turned) = UnitQuaternion::try_new(turned, 1e-6).filter(|_| (to.x + to.y + to.z).is_finite())
+            else {
+                added = Err(anyhow!("the transform from {frame} to {parent} is not one"));
+                continue;
+            };
+            let pose = Isometry3::from_parts(Translation3::new(to.x, to.y, to.z), turned);
+            let link = self.frames.entry(frame.to_owned()).or_insert_with(|| Link {
+                parent: String::new(),
+                is_static,
+                poses: VecDeque::new(),
+            });
+            let stamp = stamped.header.stamp.microseconds();
+            let restarted = link.poses.back().is_some_and(|(last, _)| stamp < last - KEPT);
+            if is_static || restarted || link.parent != parent {
+                link.poses.clear();
+            }
+            (link.parent, link.is_static) = (parent.to_owned(), is_static);
+            let place = link.poses.partition_point(|(other, _)| *other <= stamp);
+            link.poses.insert(place, (stamp, pose));
+            let newest = link.poses.back().map_or(stamp, |(last, _)| *last);
+            link.poses.retain(|(other, _)| newest - other <= KEPT);
+        }
+        added
+    }
+
+    /// The transform from the frame of a header to the fixed frame at its moment.
+    pub(crate) fn to_fixed(&self, header: &Header) -> anyhow::Result<Isometry3<f64>> {
+        let (from, to) = (name(&header.frame_id), self.fixed_frame.as_str());
+        if let Some(given) = self.given {
+            return Ok(given);
+        }
+        ensure!(
+            !from.is_empty(),
+            "the tracks name no frame: set header.frame_id, or give --transform"
+        );
+        let time = header.stamp.microseconds();
+        let others = self.upwards(to, time);
+        for (ancestor, up) in self.upwards(from, time) {
+            if let Some((_, other)) = others.iter().find(|(frame, _)| *frame == ancestor) {
+                return Ok(other.clone().map_err(Error::msg)?.inverse() * up.map_err(Error::msg)?);
+            }
+        }
+        bail!(
+            "no transform from {from} to {to} is known: publish it on /tf or /tf_static, or give --transform, or name \
+             another --frame"
+        )
+    }
+
+    /// The frame and its ancestors, with the transform from the frame to each.
+    fn upwards<'a>(&'a self, frame: &'a str, time: i64) -> Vec<(&'a str, Result<Isometry3<f64>, String>)> {
+        let mut chain = vec![(frame, Ok(Isometry3::identity()))];
+        // A frame that is its own ancestor has no end.
+        while chain.len() <= self.frames.len()
+            && let Some((frame, up)) = chain.last()
+            && let Some(link) = self.frames.get(*frame)
+        {
+            let of_link = |problem| format!("the transform from {frame} to {} {problem}", link.parent);
+            let up = up
+                .clone()
+                .and_then(|up| Ok(link.at(time, self.holds).map_err(of_link)? * up));
+            chain.push((&link.parent, up));
+        }
+        chain
+    }
+}
+
+impl Link {
+    fn at(&self, time: i64, holds: i64) -> Result<Isometry3<f64>, String> {
+        let seconds = |microseconds: i64| microseconds as f64 / 1e6;
+        let after = self
+            .poses
+            .partition_point(|(stamp, _)| self.is_static || *stamp <= time);
+        let Some((stamp, pose)) = after.checked_sub(1).and_then(|last| self.poses.get(last)) else {
+            return Err("begins after the tracks".to_owned());
+        };
+        let Some((next, next_pose)) = self.poses.get(after) else {
+            let age = time - stamp;
+            if self.is_static || age <= holds {
+                return Ok(*pose);
+            }
+            return Err(format!(
+                "is {} s old; --transform-age allows {} s",
+                seconds(age),
+                seconds(holds)
+            ));
+        };
+        let share = (time - stamp) as f64 / (next - stamp) as f64;
+        Ok(pose.try_lerp_slerp(next_pose, share, 1e-9).unwrap_or(*pose))
+    }
+}
+
+/// A place in the frame that a transform leads to.
+pub(crate) fn moved(transform: &Isometry3<f64>, Point { x, y, z }: Point) -> Point {
+    let [x, y, z] = (transform * Point3::new(x, y, z)).into();
+    Point { x, y, z }
+}
+
+/// Frames of ROS 1 begin with a slash.
+fn name(frame: &str) -> &str {
+    frame.trim_start_matches('/')
+}
