@@ -90,8 +90,8 @@ impl Place {
         Ok(tracks.map_or(0, |tracks| tracks.misfits().len()))
     }
 
-    /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; it has no
-    /// forecast if nobody is observed well enough.
+    /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; no
+    /// forecast where nobody is observed well enough.
     pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<(Header, Option<WindowForecast>)>> {
         let Some(header) = self.moment.take() else {
             return Ok(None);
