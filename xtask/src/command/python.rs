@@ -83,7 +83,9 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
 pub(super) fn check_node_for_long(workspace: &Workspace) -> Result<()> {
     make_environment(workspace)?;
     run(&mut workspace.cargo("build --release --package ddl-ros2".split(' ')))?;
-    run(test_node(workspace, "target/release/ddl-ros2").arg("-rP").env("DDL_NIGHTLY", "1"))
+    run(test_node(workspace, "target/release/ddl-ros2")
+        .arg("-rP")
+        .env("DDL_NIGHTLY", "1"))
 }
 
 /// The tests of the ROS 2 node, which need another DDS.
