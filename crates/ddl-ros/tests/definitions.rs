@@ -17,52 +17,42 @@ struct Writer<'a> {
 }
 
 impl Writer<'_> {
-    /// Between 0 and 255.
-    fn number(&mut self) -> usize {
-        self.random.next().map_or(0, |byte| *byte as usize)
+    /// A number below a limit, of at most 256.
+    fn below(&mut self, limit: usize) -> usize {
+        self.random.next().map_or(0, |byte| *byte as usize % limit)
     }
 
-    fn bytes(&mut self, count: usize) {
-        self.body.resize(self.body.len().next_multiple_of(count), 0);
-        for _ in 0..count {
-            let byte = self.number() as u8;
-            self.body.push(byte);
-        }
-    }
-
-    fn length(&mut self, length: usize) {
-        self.body.resize(self.body.len().next_multiple_of(4), 0);
-        self.body.extend((length as u32).to_le_bytes());
+    fn put(&mut self, bytes: &[u8]) {
+        self.body.resize(self.body.len().next_multiple_of(bytes.len()), 0);
+        self.body.extend(bytes);
     }
 
     fn value(&mut self, kind: &str) {
         if let Some((element, length)) = kind.split_once('[') {
             let fixed = length.trim_end_matches(']').parse();
-            let length = fixed.clone().unwrap_or_else(|_| self.number() % 3);
+            let length = fixed.clone().unwrap_or_else(|_| self.below(3));
             if fixed.is_err() {
-                self.length(length);
+                self.put(&(length as u32).to_le_bytes());
             }
             return (0..length).for_each(|_| self.value(element));
         }
-        match kind {
-            "bool" => {
-                let value = self.number() as u8 % 2;
-                self.body.push(value);
-            }
-            "byte" | "int8" | "uint8" => self.bytes(1),
-            "int32" | "uint32" | "float32" => self.bytes(4),
-            "uint64" | "float64" => self.bytes(8),
+        let size = match kind {
+            "bool" | "byte" | "int8" | "uint8" => 1,
+            "int32" | "uint32" | "float32" => 4,
+            "uint64" | "float64" => 8,
             "string" => {
-                let text = "x".repeat(self.number() % 6) + "\0";
-                self.length(text.len());
-                self.body.extend(text.bytes());
+                let text = "x".repeat(self.below(6)) + "\0";
+                self.put(&(text.len() as u32).to_le_bytes());
+                return self.body.extend(text.bytes());
             }
             message => {
-                for field in self.definitions[message].clone() {
-                    self.value(field);
-                }
+                let fields = self.definitions[message].clone();
+                return fields.into_iter().for_each(|field| self.value(field));
             }
-        }
+        };
+        let limit = if kind == "bool" { 2 } else { 256 };
+        let bytes: Vec<u8> = (0..size).map(|_| self.below(limit) as u8).collect();
+        self.put(&bytes);
     }
 }
 
@@ -72,10 +62,9 @@ fn is_described<M: Message>(random: &[u8]) {
     let rule = "=".repeat(80) + "\nMSG: ";
     let parts = text.split(&rule).map(|part| part.split_once('\n').expect("a name"));
     let definitions = parts.map(|(name, body)| {
-        let lines = body
-            .lines()
-            .filter(|line| !line.starts_with('#') && !line.contains('=') && !line.is_empty());
-        (name, lines.map(|line| line.split(' ').next().unwrap_or(line)).collect())
+        let lines = body.lines().map(|line| line.split_once(' ').unwrap_or_default());
+        let fields = lines.filter(|(kind, name)| !kind.starts_with('#') && !kind.is_empty() && !name.contains('='));
+        (name, fields.map(|(kind, _)| kind).collect())
     });
     let (definitions, random) = (definitions.collect(), random.iter().cycle());
     let mut writer = Writer {
@@ -87,7 +76,7 @@ fn is_described<M: Message>(random: &[u8]) {
     let bytes = [&[0, 1, 0, 0], &writer.body[..]].concat();
     let message: M = read(&bytes).expect(M::TYPE);
     assert_eq!(write(&message).expect(M::TYPE), bytes, "{}", M::TYPE);
-    let end = writer.number() % bytes.len();
+    let end = writer.below(256) % bytes.len();
     assert!(read::<M>(&bytes[..end]).is_err());
 }
 

@@ -80,7 +80,10 @@ impl Health {
         self.reported = Some((Instant::now(), self.dropped));
         let is_stale = self.heard.is_none_or(|heard| heard.elapsed() > STALE);
         let (level, message) = match (is_stale, self.dropped - dropped_before) {
-            (true, _) => (IS_STALE, "no tracks".to_owned()),
+            (true, _) => (
+                IS_STALE,
+                "no tracks: check topic, type, domain and quality of service".to_owned(),
+            ),
             (false, 0) => (OK, "forecasting".to_owned()),
             (false, dropped) => (WARNING, format!("{dropped} frames dropped: {}", self.last_error)),
         };

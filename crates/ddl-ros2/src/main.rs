@@ -1,5 +1,6 @@
 #![doc = include_str!("../README.md")]
 
+mod graph;
 mod health;
 mod node;
 mod options;

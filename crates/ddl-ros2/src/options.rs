@@ -2,6 +2,7 @@
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
+use ddl::data::{HORIZON, TIME_STEP};
 use ddl::scene::Area;
 use ddl_ros::Message as _;
 use ddl_ros::msg::{Detection3DArray, People, TrackedPersons};
@@ -42,7 +43,7 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) joint: bool,
     /// Also publish grids of the probability that somebody is there, this many seconds ahead: 0.8,1.6
-    #[arg(long, value_name = "SECONDS,...", value_delimiter = ',', requires = "joint")]
+    #[arg(long, value_name = "SECONDS,...", value_delimiter = ',', requires = "joint", value_parser = ahead)]
     pub(crate) grids: Vec<f64>,
     /// Side of a cell of the grids, metres
     #[arg(long, default_value_t = 0.1, value_parser = positive)]
@@ -103,6 +104,16 @@ fn transform(text: &str) -> Result<Isometry3<f64>, String> {
     let [x, y, z, yaw, pitch, roll] = numbers(text)?;
     let rotation = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
     Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))
+}
+
+fn ahead(text: &str) -> Result<f64, String> {
+    let [number] = numbers(text)?;
+    let last = HORIZON as f64 * TIME_STEP;
+    if (0.0..=last).contains(&number) {
+        Ok(number)
+    } else {
+        Err(format!("give seconds from 0 to {last:.1}"))
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -28,12 +28,8 @@ pub(crate) struct Place {
     moment: Option<Header>,
 }
 
-/// The answer to a frame.
-pub(crate) struct Answer {
-    pub(crate) header: Header,
-    /// `None` if nobody is observed well enough.
-    pub(crate) forecast: Option<(Window, Forecast)>,
-}
+/// The forecast of a frame, and the window that it is of.
+pub(crate) type WindowForecast = (Window, Forecast);
 
 impl Place {
     pub(crate) fn open(options: &Options) -> anyhow::Result<Self> {
@@ -94,36 +90,25 @@ impl Place {
         Ok(tracks.map_or(0, |tracks| tracks.misfits().len()))
     }
 
-    /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame.
-    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<Answer>> {
+    /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; no
+    /// forecast where nobody is observed well enough.
+    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<(Header, Option<WindowForecast>)>> {
         let Some(header) = self.moment.take() else {
             return Ok(None);
         };
-        let forecast = match self.scenes.next_batch(LiveScenes::BATCH).windows.pop() {
-            None => None,
-            Some(window) if self.joint => {
-                let forecast = self
-                    .model
-                    .forecast_scenes(std::slice::from_ref(&window), None)?
-                    .remove(0);
-                Some((window, forecast))
-            }
-            Some(window) => {
-                let forecast = self.model.forecast(&window)?;
-                let adapted = self.regions.adapt(&window, forecast);
-                Some((window, adapted))
-            }
+        let Some(window) = self.scenes.next_batch(LiveScenes::BATCH).windows.pop() else {
+            return Ok(Some((header, None)));
         };
-        let named = forecast.map(|(window, forecast)| {
-            self.names = self
-                .names
-                .updated(&PedestrianNames::default(), |id| window.pedestrians().contains(&id));
-            (window.with_names(self.names.clone()), forecast)
-        });
-        Ok(Some(Answer {
-            header,
-            forecast: named,
-        }))
+        let forecast = if self.joint {
+            let windows = std::slice::from_ref(&window);
+            self.model.forecast_scenes(windows, None)?.remove(0)
+        } else {
+            self.regions.adapt(&window, self.model.forecast(&window)?)
+        };
+        let is_kept = |id| window.pedestrians().contains(&id);
+        self.names = self.names.updated(&PedestrianNames::default(), is_kept);
+        let window = window.with_names(self.names.clone());
+        Ok(Some((header, Some((window, forecast)))))
     }
 
     /// Number of frames that were skipped.
