@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 
-use super::{docs, python, set_up, test};
+use super::{c, docs, python, set_up, test};
 use crate::browser;
 use crate::debian;
 use crate::libtorch::{self, Request};
@@ -39,6 +39,8 @@ enum Check {
     Packages,
     /// The wheel for users, and its tests
     Wheel,
+    /// The library for C and C++ that users get: two compilers, sanitizers, valgrind, size, memory, time
+    C,
     /// Every page of the documentation in a browser
     Site,
     /// All of these
@@ -84,6 +86,7 @@ impl Check {
             Self::Sanitizer => sanitizer(workspace, words),
             Self::Packages => packages(workspace),
             Self::Wheel => python::Arguments::default().run(workspace),
+            Self::C => c::check_all(workspace),
             Self::Site => {
                 docs::build(workspace, docs::ALONE)?;
                 let [site, pictures] = [docs::SITE, "target/screenshots"].map(|folder| workspace.path(folder));
