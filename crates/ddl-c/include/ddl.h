@@ -37,9 +37,9 @@ typedef struct ddl_model ddl_model;
 
 // A position on the ground, metres.
 typedef struct ddl_point {
-  // Metres.
+  // Along the first axis.
   double x;
-  // Metres.
+  // Along the second axis.
   double y;
 } ddl_point;
 
@@ -65,8 +65,6 @@ typedef struct ddl_plan {
 typedef struct ddl_request {
   // Futures of the whole scene instead, for risk and occupancy: hypothesis k of every pedestrian is future k.
   bool joint;
-  // The evidence that each path approaches its goal; not with `joint`, which has the verdicts.
-  bool certificates;
   // With `joint`: a plan that the pedestrians respond to; all zero without one.
   struct ddl_plan plan;
   // The id of the pedestrian who follows that plan; null if it is somebody else, such as a robot.
@@ -124,20 +122,12 @@ typedef struct ddl_view {
   const double *weights;
   // `[N][K]`.
   const struct ddl_point *goals;
-  // `[N][K]`: whether the path provably approaches its goal and keeps its bounds.
+  // `[N][K]`: the verdict of the certificate: the distance to the goal falls at every step, and the bounds are kept.
   const bool *certified;
   // `[N]`: share of training motions that are at least as unusual as the observed one.
   const double *familiarity;
   // `[N][12]`: scale of Student's t, three degrees of freedom, around the hypothesis that is followed, metres.
   const double *spread;
-  // `[N][K][13]`: distance to the goal at the present and at each step, metres; with `certificates`, as the next three.
-  const double *potentials;
-  // `[N][K]`: smallest eigenvalue of the metrics of the path.
-  const double *min_eigenvalue;
-  // `[N][K]`: smallest margin of a step to the largest stable one.
-  const double *min_step_margin;
-  // `[N][K]`: largest angle between a step and the direction to the goal, radians.
-  const double *largest_angle;
   // `[misfit_count]`: rows of this frame that do not fit.
   const struct ddl_misfit *misfits;
   // Their number.
@@ -173,7 +163,7 @@ typedef struct ddl_cells {
   // Radius of a pedestrian, metres; 0.2 if nothing else is known.
   double radius;
   // Two corners, the lowest x and y first; null for the smallest area around all paths.
-  const struct ddl_point *corners;
+  const struct ddl_point (*corners)[2];
   // Metres around all paths, without corners.
   double margin;
 } ddl_cells;
@@ -203,26 +193,26 @@ extern "C" {
 // The version of the library, such as "0.2.0".
 const char *ddl_version(void);
 
-// What was wrong in the last call on this thread that failed: what, where, and what to do. Valid until the next failure
-// on this thread; empty before the first.
+// What was wrong in the last call on this thread that failed: what, where, and what to do. Valid until the next
+// failure on this thread; empty before the first.
 const char *ddl_last_error(void);
 
 // Opens a model: "world", which is built in, a packed model, or the folder of a run. With `threads` 1 everything is
-// computed on the thread that calls, with its priority; a thread that calls takes some kB for good. Otherwise the model
-// has so many threads of its own; 0 for one on each core.
+// computed on the thread that calls, with its priority; each thread that calls takes some kB for good. Otherwise the
+// model has so many threads of its own; 0 for one on each core.
 enum ddl_status ddl_model_open(const char *name, size_t threads, struct ddl_model **model);
 
-// Frees a model; live tracks keep what they need of it. Null is nothing.
-void ddl_model_free(struct ddl_model *model);
+// Frees a model; live tracks keep what they need of it. Null is nothing, as in all functions that free.
+void ddl_model_free(struct ddl_model*);
 
-// A place for forecasts; null only by a defect. Memory is taken when it is first filled, and used again.
+// A place for forecasts. It takes memory when it is filled, and uses it again.
 struct ddl_forecast *ddl_forecast_new(void);
 
-// Frees a forecast with everything that it has shown. Null is nothing.
-void ddl_forecast_free(struct ddl_forecast *forecast);
+// Frees a forecast with everything that it has shown.
+void ddl_forecast_free(struct ddl_forecast*);
 
-// Forecasts `count` pedestrians whose last 8 positions are known: `past` is `[count][8]`, 0.4 s apart, the present last.
-// They have the ids 0, 1, 2 and so on.
+// Forecasts `count` pedestrians whose last 8 positions are known: `past` is `[count][8]`, 0.4 s apart, the present
+// last. They have the ids 0, 1, 2 and so on. `request` may be null.
 enum ddl_status ddl_model_forecast(const struct ddl_model *model,
                                    const struct ddl_point *past,
                                    size_t count,
@@ -251,17 +241,15 @@ enum ddl_status ddl_live_clear(const struct ddl_live *live);
 // minute.
 enum ddl_status ddl_live_close(const struct ddl_live *live);
 
-// Frees live tracks. It does not write the memory: `ddl_live_close` does. Null is nothing.
-void ddl_live_free(struct ddl_live *live);
+// Frees live tracks. It does not write the memory: `ddl_live_close` does.
+void ddl_live_free(struct ddl_live*);
 
 // What was forecast last; null for null. Valid until the next forecast into the handle.
 const struct ddl_view *ddl_forecast_view(const struct ddl_forecast *forecast);
 
-// Radii (m) `[N][K][12]` of the discs around the hypotheses that together hold a pedestrian with the probability `level`;
-// NaN where there is no disc. Valid until the next call for radii of the handle.
-enum ddl_status ddl_forecast_radii(struct ddl_forecast *forecast,
-                                   double level,
-                                   const double **radii);
+// Radii (m) `[N][K][12]` of the discs around the hypotheses that together hold a pedestrian with the probability
+// `level`; NaN where there is no disc. Valid until the next call for radii of the handle.
+enum ddl_status ddl_forecast_radii(struct ddl_forecast *forecast, double level, const double **radii);
 
 // The risk that somebody comes within `within` metres of the edge of each plan, from joint futures. People see a plan
 // and keep away from it as from a pedestrian, unless `unseen`. `ego` is the id of the pedestrian who follows the plans;

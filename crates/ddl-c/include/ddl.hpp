@@ -180,7 +180,7 @@ public:
             corners[0] = cells.corners->first;
             corners[1] = cells.corners->second;
         }
-        const ddl_cells wanted = {cells.cell, cells.every, cells.radius, cells.corners ? corners : nullptr,
+        const ddl_cells wanted = {cells.cell, cells.every, cells.radius, cells.corners ? &corners : nullptr,
                                   cells.margin};
         const ddl_occupancy* occupancy = nullptr;
         detail::check(ddl_forecast_occupancy(handle_.get(), &wanted, &occupancy));

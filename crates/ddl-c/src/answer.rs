@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 #[derive(Debug, Default)]
 pub(crate) struct Answer {
-    held: Option<(Window, Forecast, Arc<Threads>)>,
+    held: Option<Held>,
     ids: Vec<i64>,
     numbers: Packed,
     certified: Vec<bool>,
@@ -25,6 +25,14 @@ pub(crate) struct Answer {
     times: Vec<f64>,
     probabilities: Vec<f32>,
     pub(crate) occupancy: ddl_occupancy,
+}
+
+#[derive(Debug)]
+pub(crate) struct Held {
+    pub(crate) window: Window,
+    pub(crate) forecast: Forecast,
+    pub(crate) is_joint: bool,
+    pub(crate) threads: Arc<Threads>,
 }
 
 /// What a live frame says besides its forecast.
@@ -62,11 +70,11 @@ impl Packed {
 
 impl Answer {
     /// Holds this forecast instead of the last; `None` where nobody can be forecast.
-    pub(crate) fn hold(&mut self, made: Option<(Window, Forecast)>, notes: &Notes<'_>, threads: &Arc<Threads>) {
+    pub(crate) fn hold(&mut self, held: Option<Held>, notes: &Notes<'_>) {
         self.ids.clear();
         self.certified.clear();
         self.numbers.clear();
-        if let Some((window, forecast)) = &made {
+        if let Some(Held { window, forecast, .. }) = &held {
             self.fill(window, forecast);
         }
         let misfits = notes
@@ -80,7 +88,7 @@ impl Answer {
         let [past, age, uncertainty, paths, weights, goals, familiarity, spread] = self.numbers.arrays();
         self.view = ddl_view {
             pedestrians: self.ids.len(),
-            hypotheses: made.as_ref().map_or(0, |(_, forecast)| forecast.hypotheses()),
+            hypotheses: held.as_ref().map_or(0, |held| held.forecast.hypotheses()),
             ids: address(&self.ids),
             past: past.cast(),
             age,
@@ -96,7 +104,7 @@ impl Answer {
             remembered: notes.remembered,
             warning: notes.warning.as_ref().map_or(ptr::null(), |_| self.warning.as_ptr()),
         };
-        self.held = made.map(|(window, forecast)| (window, forecast, Arc::clone(threads)));
+        self.held = held;
     }
 
     fn fill(&mut self, window: &Window, forecast: &Forecast) {
@@ -122,7 +130,7 @@ impl Answer {
     /// Radii `[N][K][12]` of the discs around the hypotheses in the region of a level; NaN where there is none.
     pub(crate) fn compute_radii(&mut self, level: f64) -> Result<(), Failure> {
         self.radii.clear();
-        let Some((_, forecast, _)) = &self.held else {
+        let Some(Held { forecast, .. }) = &self.held else {
             return Ok(());
         };
         let none = || Failure::invalid("the hypotheses of this model have no weights, and so no regions");
@@ -146,13 +154,13 @@ impl Answer {
         ego: Option<i64>,
         seen: bool,
     ) -> Result<(), Failure> {
-        let (window, futures, threads) = self.joint()?;
+        let (held, futures) = self.joint()?;
         let index = |id| {
-            let index = window.pedestrians().iter().position(|known| known.0 == id);
+            let index = held.window.pedestrians().iter().position(|known| known.0 == id);
             index.ok_or_else(|| Failure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
         };
         let ego = ego.map(index).transpose()?;
-        let risks = threads.run(|| {
+        let risks = held.threads.run(|| {
             let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
             risks(&futures, plans, within, ego).map_err(Failure::invalid)
         })?;
@@ -177,7 +185,8 @@ impl Answer {
 
     /// Grids of the probability that a cell is occupied.
     pub(crate) fn compute_occupancy(&mut self, cells: &ddl_cells<'_>) -> Result<(), Failure> {
-        let (_, futures, threads) = self.joint()?;
+        let (held, futures) = self.joint()?;
+        let threads = Arc::clone(&held.threads);
         let area = match cells.corners {
             Some(corners) => {
                 let [low, high] = corners.map(|corner| [corner.x, corner.y]);
@@ -210,12 +219,12 @@ impl Answer {
         Ok(())
     }
 
-    /// The joint futures that are held. Without them the error says so.
-    fn joint(&self) -> Result<(&Window, Futures, Arc<Threads>), Failure> {
-        let nobody = || Failure::invalid("nobody is forecast, for whom there could be risk or occupancy");
-        let (window, forecast, threads) = self.held.as_ref().ok_or_else(nobody)?;
-        let futures = Futures::new(window, forecast.clone()).map_err(Failure::invalid)?;
-        Ok((window, futures, Arc::clone(threads)))
+    fn joint(&self) -> Result<(&Held, Futures), Failure> {
+        let held = self.held.as_ref().filter(|held| held.is_joint);
+        let words = "risk and occupancy need a forecast of somebody, with joint set in its request";
+        let held = held.ok_or_else(|| Failure::invalid(words))?;
+        let futures = Futures::new(&held.window, held.forecast.clone()).map_err(Failure::invalid)?;
+        Ok((held, futures))
     }
 }
 

@@ -82,8 +82,9 @@ pub unsafe extern "C" fn ddl_model_forecast(
         let tracks = tracks.map(|track| track.iter().map(|position| [position.x, position.y]).collect());
         let ids = (0..count as i64).map(PedestrianId).collect();
         let window = Window::new("past", 0, 1, ids, tracks.collect()).map_err(Failure::invalid)?;
-        let made = model.forecast(&window, &request)?;
-        forecast.0.hold(Some((window, made)), &Notes::default(), &model.threads);
+        forecast
+            .0
+            .hold(Some(model.forecast(window, &request)?), &Notes::default());
         Ok(())
     })
 }

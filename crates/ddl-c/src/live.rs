@@ -1,6 +1,6 @@
 //! The tracks of one place, frame by frame.
 
-use crate::answer::{Answer, Notes};
+use crate::answer::{Answer, Held, Notes};
 use crate::boundary::Failure;
 use crate::layout::ddl_live_options;
 use crate::model::{Model, Request, Threads};
@@ -72,8 +72,13 @@ impl Live {
         let made = self
             .threads
             .run(|| place.push(frame as i64, seen, request).map_err(failed))?;
-        let made = made.map(|now| (now.window, now.forecast));
-        answer.hold(made, &place.notes(), &self.threads);
+        let held = made.map(|now| Held {
+            window: now.window,
+            forecast: now.forecast,
+            is_joint: matches!(request, Request::Joint(_)),
+            threads: Arc::clone(&self.threads),
+        });
+        answer.hold(held, &place.notes());
         Ok(())
     }
 

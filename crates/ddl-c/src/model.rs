@@ -1,8 +1,9 @@
 //! A loaded model, the threads that it computes on, and what is asked of it.
 
+use crate::answer::Held;
 use crate::boundary::Failure;
 use ddl::data::Window;
-use ddl::{Ddl, DeviceChoice, Forecast, ForecastError, Forecaster as _, GivenPlan, ModelSource};
+use ddl::{Ddl, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
@@ -30,16 +31,21 @@ impl Model {
         Ok(Self { ddl, threads })
     }
 
-    pub(crate) fn forecast(&self, window: &Window, request: &Request) -> Result<Forecast, Failure> {
+    pub(crate) fn forecast(&self, window: Window, request: &Request) -> Result<Held, Failure> {
         let forecast = || match request {
-            Request::Hypotheses => self.ddl.forecast(window),
+            Request::Hypotheses => self.ddl.forecast(&window),
             Request::Joint(given) => {
-                let scenes = self.ddl.forecast_scenes(std::slice::from_ref(window), given.as_ref());
+                let scenes = self.ddl.forecast_scenes(std::slice::from_ref(&window), given.as_ref());
                 scenes.map(|mut scenes| scenes.remove(0))
             }
         };
-        self.threads
-            .run(|| forecast().map_err(|error: ForecastError| Failure::invalid(error)))
+        let forecast = || forecast().map_err(|error: ForecastError| Failure::invalid(error));
+        Ok(Held {
+            forecast: self.threads.run(forecast)?,
+            window,
+            is_joint: matches!(request, Request::Joint(_)),
+            threads: Arc::clone(&self.threads),
+        })
     }
 }
 

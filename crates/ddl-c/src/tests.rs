@@ -48,8 +48,16 @@ fn live_tracks_have_the_bits_of_the_facade() {
         };
         let at = 0.1 * f64::from(tick);
         // SAFETY: rows of this function.
-        let status =
-            unsafe { ddl_live_observe(Some(&live), at, rows.as_ptr(), PEOPLE, Some(&request), Some(&mut forecast)) };
+        let status = unsafe {
+            ddl_live_observe(
+                Some(&live),
+                at,
+                rows.as_ptr(),
+                PEOPLE,
+                Some(&request),
+                Some(&mut forecast),
+            )
+        };
         assert_eq!(status, ddl_status::OK);
         let (frame, seen) = (i64::from(tick) * 100_000, seen(tick));
         let now = match request.joint {

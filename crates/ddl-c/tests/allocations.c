@@ -72,7 +72,7 @@ static void frame(ddl_live *live, ddl_forecast *forecast, int tick) {
         seen[i].position.y = 3.0 * (i / 5) + radius * sin(angle);
     }
     ddl_request request = {0};
-    request.joint = tick % 10 == 0;
+    request.joint = tick % 10 == 9;
     check(ddl_live_observe(live, 0.1 * tick, seen, PEOPLE, &request, forecast));
     const double *radii;
     check(ddl_forecast_radii(forecast, 0.9, &radii));
@@ -81,8 +81,8 @@ static void frame(ddl_live *live, ddl_forecast *forecast, int tick) {
         const ddl_plan plan = {rows, 2};
         const ddl_risks *risks;
         check(ddl_forecast_risks(forecast, &plan, 1, 0.5, NULL, false, &risks));
-        const ddl_point corners[] = {{-10.0, -10.0}, {25.0, 25.0}};
-        const ddl_cells cells = {0.25, 0.8, 0.2, corners, 0.0};
+        const ddl_point corners[2] = {{-10.0, -10.0}, {25.0, 25.0}};
+        const ddl_cells cells = {0.25, 0.8, 0.2, &corners, 0.0};
         const ddl_occupancy *occupancy;
         check(ddl_forecast_occupancy(forecast, &cells, &occupancy));
     }

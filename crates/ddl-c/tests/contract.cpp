@@ -46,8 +46,8 @@ std::string error_of(Call call, ddl_status status = DDL_STATUS_INVALID) {
         REQUIRE(error.status() == status);
         return error.what();
     }
-    REQUIRE(!"an error was expected");
-    return {};
+    std::fprintf(stderr, "no error where one was expected\n");
+    std::abort();
 }
 
 double distance(ddl::Point a, ddl::Point b) { return std::hypot(a.x - b.x, a.y - b.y); }

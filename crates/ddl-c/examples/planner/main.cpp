@@ -10,10 +10,9 @@ namespace {
 
 // Person i of eight: four walk east along y = 2 to 3.5, four west along y = 4 to 5.5, with a sway.
 ddl::Observation person(int i, double time) {
-    const double direction = i % 2 ? -1.0 : 1.0, speed = 1.1 + 0.05 * i;
-    const double start = direction > 0 ? -2.0 - 1.5 * i : 12.0 + 1.5 * i;
+    const double direction = i % 2 ? -1.0 : 1.0, speed = 1.1 + 0.05 * i, crossing = 1.5 + 0.6 * i;
     const double lane = (direction > 0 ? 2.0 : 4.0) + 0.25 * i;
-    return {i, {start + direction * speed * time, lane + 0.05 * std::sin(2.0 * time + i)}};
+    return {i, {5.0 + direction * speed * (time - crossing), lane + 0.05 * std::sin(2.0 * time + i)}};
 }
 
 // From `at` to the far side, at this speed and slant, for 4.8 s.
