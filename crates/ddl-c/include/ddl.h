@@ -197,6 +197,10 @@ const char *ddl_version(void);
 // failure on this thread; empty before the first.
 const char *ddl_last_error(void);
 
+// Takes so many bytes from the system now, for the pool of the library, so that later calls need not: 24 MB are enough
+// for 25 pedestrians. Without the feature `pool` it has no effect.
+enum ddl_status ddl_reserve(size_t bytes);
+
 // Opens a model: "world", which is built in, a packed model, or the folder of a run. With `threads` 1 everything is
 // computed on the thread that calls, with its priority; each thread that calls takes some kB for good. Otherwise the
 // model has so many threads of its own; 0 for one on each core.

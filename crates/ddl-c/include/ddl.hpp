@@ -75,6 +75,9 @@ private:
     std::size_t size_;
 };
 
+/// Takes so many bytes from the system now, so that later calls need not: 24 MB are enough for 25 pedestrians.
+inline void reserve(std::size_t bytes) { detail::check(ddl_reserve(bytes)); }
+
 /// A trained model; any number of threads may use it at the same time.
 class Model {
 public:

@@ -32,6 +32,20 @@ pub extern "C" fn ddl_last_error() -> *const c_char {
     last_error()
 }
 
+/// Takes so many bytes from the system now, for the pool of the library, so that later calls need not: 24 MB are enough
+/// for 25 pedestrians. Without the feature `pool` it has no effect.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_reserve(bytes: usize) -> ddl_status {
+    guarded(|| {
+        let mut block = Vec::new();
+        block.try_reserve_exact(bytes).map_err(Failure::invalid)?;
+        // Pages are taken when they are written. The pool keeps the block that is freed here.
+        block.resize(bytes, 1_u8);
+        std::hint::black_box(&block);
+        Ok(())
+    })
+}
+
 /// Opens a model: "world", which is built in, a packed model, or the folder of a run. With `threads` 1 everything is
 /// computed on the thread that calls, with its priority; each thread that calls takes some kB for good. Otherwise the
 /// model has so many threads of its own; 0 for one on each core.

@@ -62,7 +62,7 @@ impl Live {
             return Err(Failure::invalid(format!("the moment is {at}; it must be {words}")));
         }
         let unit = if self.has_times {
-            " (frames are microseconds)"
+            " s (frames are microseconds)"
         } else {
             ""
         };

@@ -13,7 +13,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-enum { PEOPLE = 25, WARM = 300, FRAMES = 1000 };
+enum { WARM = 100, FRAMES = 1000 };
 
 static atomic_bool counting;
 static atomic_long calls;
@@ -96,6 +96,7 @@ static long page_faults(void) {
 
 int main(void) {
     int failures = 0;
+    check(ddl_reserve(24 << 20));
     for (size_t threads = 1; threads <= 2; ++threads) {
         ddl_model *model;
         ddl_live *live;

@@ -104,7 +104,7 @@ void scenes_answer_plans(const ddl::Model& model) {
     const ddl_occupancy& grids = forecast.occupancy(cells);
     REQUIRE(grids.times == 13 && grids.width == 44 && grids.height == 20 && grids.cell == 0.25);
     // The first pedestrian stands in (3.5, 0) now: the cell (18, 8) begins there.
-    REQUIRE(grids.probabilities[8 * 44 + 18] == 1.0F && grids.probabilities[0] == 0.0F);
+    REQUIRE(grids.probabilities[8 * 44 + 18] > 0.999F && grids.probabilities[0] == 0.0F);
     REQUIRE(grids.time[12] > 4.79 && grids.origin.x == -1.0);
     cells.cell = 0.0;
     REQUIRE(has(error_of([&] { forecast.occupancy(cells); }), "the size of a cell is 0"));
@@ -161,6 +161,7 @@ void wrong_input_is_told(const ddl::Model& model) {
     REQUIRE(ddl_forecast_risks(forecast.get(), &empty, 1, 0.5, nullptr, false, &risks) == DDL_STATUS_INVALID);
     REQUIRE(ddl_forecast_occupancy(forecast.get(), nullptr, nullptr) == DDL_STATUS_INVALID);
     REQUIRE(ddl_forecast_view(nullptr) == nullptr && ddl_live_close(nullptr) == DDL_STATUS_INVALID);
+    REQUIRE(ddl_reserve(SIZE_MAX) == DDL_STATUS_INVALID && ddl_reserve(0) == DDL_STATUS_OK);
     ddl_model_free(nullptr);
     ddl_live_free(nullptr);
     ddl_forecast_free(nullptr);
@@ -176,8 +177,8 @@ void a_place_is_remembered(const ddl::Model& model) {
         ddl::Live live(model, options);
         REQUIRE(has(error_of([&] { ddl::Live(model, options); }, DDL_STATUS_FILE), "contract.memory"));
         ddl::Forecast forecast;
-        for (int t = 0; t < 12; ++t) live.observe(t, meeting_at(t), forecast);
-        REQUIRE(has(error_of([&] { live.observe(12.5, meeting_at(12), forecast); }), "whole number"));
+        for (int t = 0; t < 30; ++t) live.observe(t, meeting_at(t), forecast);
+        REQUIRE(has(error_of([&] { live.observe(30.5, meeting_at(30), forecast); }), "whole number"));
         REQUIRE(forecast.view().remembered > 0 && forecast.view().warning == nullptr);
         live.clear();
         live.observe(0, {}, forecast);

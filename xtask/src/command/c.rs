@@ -125,7 +125,7 @@ pub(super) fn check_all(workspace: &Workspace) -> Result<()> {
         test(workspace, &prefix, compiler, Under::Nothing)?;
     }
     with_pkg_config(workspace, &prefix)?;
-    let mut bench = workspace.cargo("bench --package ddl-c --bench overhead -- 1.02".split(' '));
+    let mut bench = workspace.cargo("bench --package ddl-c --profile wheel --bench overhead -- 1.02".split(' '));
     run(bench.env("DDL_C_LIBRARY", library))
 }
 
