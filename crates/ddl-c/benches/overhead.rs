@@ -27,7 +27,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let Some(path) = std::env::var_os("DDL_C_LIBRARY") else {
         return Ok(());
     };
-    ddl::prepare(DeviceChoice::Cpu, Some(1))?;
+    // On the calling thread, as the library.
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .use_current_thread()
+        .build_global()?;
     let tracks: Vec<Vec<Position>> = (0..PEDESTRIANS).map(track).collect();
     let flat = tracks.concat();
     let ids = (0..PEDESTRIANS as i64).map(PedestrianId).collect();

@@ -60,9 +60,10 @@ fn live_tracks_have_the_bits_of_the_facade() {
         };
         assert_eq!(status, ddl_status::OK);
         let (frame, seen) = (i64::from(tick) * 100_000, seen(tick));
-        let now = match request.joint {
-            true => expected.push_joint(frame, seen, None),
-            false => expected.push(frame, seen),
+        let now = if request.joint {
+            expected.push_joint(frame, seen, None)
+        } else {
+            expected.push(frame, seen)
         };
         let view = ddl_forecast_view(Some(&forecast)).unwrap();
         let Some(now) = now.unwrap().map(|now| now.forecast) else {

@@ -1,4 +1,4 @@
-//! `cargo xtask c`: the library for C and C++, installed with its headers, for pkg-config and CMake.
+//! `cargo xtask c`: the library for C and C++, installed with its headers, for `pkg-config` and `CMake`.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -79,40 +79,32 @@ fn install(workspace: &Workspace, profile: &str, prefix: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The compilers and tools of the checks.
+/// What the check in `ci` needs besides a compiler.
 pub(super) fn prepare() -> Result<()> {
-    for (program, packages) in [
-        ("cmake", &["cmake", "make"][..]),
-        ("pkg-config", &["pkg-config"]),
-        ("valgrind", &["valgrind", "libc6-dbg"]),
-        ("clang", &["clang", "libclang-rt-dev"]),
-    ] {
-        debian::ensure_program(program, packages)?;
-    }
-    Ok(())
+    debian::ensure_program("cmake", &["cmake", "make"])?;
+    debian::ensure_program("pkg-config", &["pkg-config"])
 }
 
 /// The check of `ci`, on the library that it has built with everything else.
 pub(super) fn check(workspace: &Workspace) -> Result<()> {
     let prefix = workspace.path(CHECKED).join("debug");
     install(workspace, "debug", &prefix)?;
-    test(workspace, &prefix, "gcc", Under::Nothing)?;
+    test(workspace, &prefix, "gcc", DEVELOPMENT)?;
+    test(workspace, &prefix, "gcc", SANITIZED)?;
     with_pkg_config(workspace, &prefix)
 }
 
 /// The check of `nightly`: the library that users get, by two compilers, under `AddressSanitizer` and valgrind.
 pub(super) fn check_all(workspace: &Workspace) -> Result<()> {
     prepare()?;
+    debian::ensure_program("valgrind", &["valgrind", "libc6-dbg"])?;
+    debian::ensure_program("clang", &["clang", "libclang-rt-dev"])?;
     // Sanitizers watch malloc, which the pool does not call.
     build(workspace, "--no-default-features")?;
     let prefix = workspace.path(CHECKED).join("sanitized");
     install(workspace, PROFILE, &prefix)?;
-    for (compiler, under) in [
-        ("gcc", Under::Sanitizers),
-        ("clang", Under::Sanitizers),
-        ("gcc", Under::Valgrind),
-    ] {
-        test(workspace, &prefix, compiler, under)?;
+    for (compiler, trial) in [("gcc", SANITIZED), ("clang", SANITIZED), ("gcc", WATCHED)] {
+        test(workspace, &prefix, compiler, trial)?;
     }
     build(workspace, "")?;
     let prefix = workspace.path(CHECKED).join("released");
@@ -122,63 +114,57 @@ pub(super) fn check_all(workspace: &Workspace) -> Result<()> {
     println!("{} has {size} bytes", library.display());
     ensure!(size <= LARGEST, "that is more than {LARGEST}: find out what has grown");
     for compiler in ["gcc", "clang"] {
-        test(workspace, &prefix, compiler, Under::Nothing)?;
+        test(workspace, &prefix, compiler, RELEASED)?;
     }
     with_pkg_config(workspace, &prefix)?;
-    let mut bench = workspace.cargo("bench --package ddl-c --profile wheel --bench overhead -- 1.02".split(' '));
+    let bench = format!("bench --package ddl-c --profile {PROFILE} --bench overhead -- 1.02");
+    let mut bench = workspace.cargo(bench.split(' '));
     run(bench.env("DDL_C_LIBRARY", library))
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Under {
-    Nothing,
-    Sanitizers,
-    Valgrind,
-}
+/// Name, flags of the compiler, option of `CMake`, tests that are left out.
+type Trial = [&'static str; 4];
+const RELEASED: Trial = ["released", "-O2", "-DPEOPLE=25", "none"];
+const DEVELOPMENT: Trial = ["development", "-O2", "-DPEOPLE=6", "none"];
+const SANITIZED: Trial = [
+    "sanitized",
+    "-g -fsanitize=address,undefined -fno-sanitize-recover=all",
+    "-DPEOPLE=1",
+    "allocations",
+];
+const WATCHED: Trial = [
+    "watched",
+    "-g",
+    "-DCMAKE_CROSSCOMPILING_EMULATOR=valgrind;--quiet;--error-exitcode=9",
+    "allocations",
+];
 
-/// Builds the example and the tests against an installed library with CMake, and runs them.
-fn test(workspace: &Workspace, prefix: &Path, compiler: &str, under: Under) -> Result<()> {
-    let folder = prefix.join(format!("{compiler}-{under:?}").to_lowercase());
-    let flags = match under {
-        Under::Nothing => "-O2",
-        Under::Sanitizers => "-g -fsanitize=address,undefined -fno-sanitize-recover=all",
-        Under::Valgrind => "-g",
-    };
+/// Builds the example and the tests against an installed library with `CMake`, and runs them.
+fn test(workspace: &Workspace, prefix: &Path, compiler: &str, trial: Trial) -> Result<()> {
+    let [name, flags, option, left_out] = trial;
+    let folder = prefix.join(format!("{compiler}-{name}"));
     let mut configure = workspace.program("cmake");
-    configure.args(["-S", &format!("{CRATE}/tests"), "-B"]).arg(&folder);
+    configure.args(["-S", "crates/ddl-c/tests", option, "-B"]).arg(&folder);
     configure.arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display()));
-    for (language, name) in [
-        ("C", compiler),
-        ("CXX", if compiler == "gcc" { "g++" } else { "clang++" }),
-    ] {
+    let plus = if compiler == "gcc" { "g++" } else { "clang++" };
+    for (language, name) in [("C", compiler), ("CXX", plus)] {
         configure.arg(format!("-DCMAKE_{language}_COMPILER={name}"));
         configure.arg(format!("-DCMAKE_{language}_FLAGS={flags}"));
-    }
-    if under == Under::Valgrind {
-        configure.arg("-DCMAKE_CROSSCOMPILING_EMULATOR=valgrind;--quiet;--error-exitcode=9");
     }
     run(&mut configure)?;
     run(workspace.program("cmake").arg("--build").arg(&folder))?;
     let mut tests = workspace.program("ctest");
-    tests
-        .arg("--test-dir")
-        .arg(&folder)
-        .args(["--output-on-failure", "--verbose"]);
-    if under != Under::Nothing {
-        tests.args(["--exclude-regex", "allocations"]);
-    }
-    run(&mut tests)
+    tests.args(["--verbose", "--exclude-regex", left_out, "--test-dir"]);
+    run(tests.arg(folder))
 }
 
-/// The example by one line of a shell.
+/// The program of the page, by its one line of a shell.
 fn with_pkg_config(workspace: &Workspace, prefix: &Path) -> Result<()> {
+    let line = "sed -n '/^```cpp$/,/^```$/p' docs/cpp.md | sed '/^```/d' > \"$1.cpp\" && \
+                c++ -std=c++17 \"$1.cpp\" $(pkg-config --cflags --libs ddl) -o \"$1\" && exec \"$1\"";
     let lib = prefix.join("lib");
-    let line = format!(
-        "c++ -std=c++17 {CRATE}/examples/planner/main.cpp $(pkg-config --cflags --libs ddl) -o \"$1\" && exec \"$1\""
-    );
     let mut shell = workspace.program("sh");
-    shell.args(["-c", &line, "sh"]).arg(prefix.join("planner"));
-    run(shell
-        .env("PKG_CONFIG_PATH", lib.join("pkgconfig"))
-        .env("LD_LIBRARY_PATH", lib))
+    shell.args(["-c", line, "sh"]).arg(prefix.join("page"));
+    shell.env("PKG_CONFIG_PATH", lib.join("pkgconfig"));
+    run(shell.env("LD_LIBRARY_PATH", lib))
 }
