@@ -2,8 +2,8 @@
 // of plans and occupancy. From C++ include ddl.hpp. Made by cbindgen from the crate ddl-c; do not edit.
 //
 // - Functions return a status; ddl_last_error() has the words. No panic of Rust leaves a function.
-// - A null pointer where one is needed, a wrong number or plan is DDL_STATUS_INVALID. Nobody checks that a pointer leads
-//   to as many values as stated, or to a handle that is not freed.
+// - A null pointer where one is needed, a wrong number or plan is DDL_STATUS_INVALID. Nobody checks that a pointer
+//   leads to as many values as stated, or to a handle that is not freed.
 // - Lengths are metres, times seconds. What a pointer to const leads to is not changed, nor kept after the call.
 // - Structures of options may be all zero, where nothing else is said.
 
@@ -256,8 +256,8 @@ const struct ddl_view *ddl_forecast_view(const struct ddl_forecast *forecast);
 enum ddl_status ddl_forecast_radii(struct ddl_forecast *forecast, double level, const double **radii);
 
 // The risk that somebody comes within `within` metres of the edge of each plan, from joint futures. People see a plan
-// and keep away from it as from a pedestrian, unless `unseen`. `ego` is the id of the pedestrian who follows the plans;
-// null if it is somebody else, such as a robot. Valid until the next call for risks of the handle.
+// and keep away from it as from a pedestrian, unless `unseen`. `ego` is the id of the pedestrian who follows the
+// plans; null if it is somebody else, such as a robot. Valid until the next call for risks of the handle.
 enum ddl_status ddl_forecast_risks(struct ddl_forecast *forecast,
                                    const struct ddl_plan *plans,
                                    size_t count,

@@ -186,8 +186,8 @@ pub extern "C" fn ddl_forecast_radii(
 }
 
 /// The risk that somebody comes within `within` metres of the edge of each plan, from joint futures. People see a plan
-/// and keep away from it as from a pedestrian, unless `unseen`. `ego` is the id of the pedestrian who follows the plans;
-/// null if it is somebody else, such as a robot. Valid until the next call for risks of the handle.
+/// and keep away from it as from a pedestrian, unless `unseen`. `ego` is the id of the pedestrian who follows the
+/// plans; null if it is somebody else, such as a robot. Valid until the next call for risks of the handle.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ddl_forecast_risks(
     forecast: Option<&mut ddl_forecast>,
