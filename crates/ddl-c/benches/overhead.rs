@@ -23,8 +23,8 @@ type Forecast = unsafe extern "C" fn(*const c_void, *const Position, usize, *con
 
 fn main() -> Result<(), Box<dyn Error>> {
     let most = std::env::args().find_map(|argument| argument.parse::<f64>().ok());
-    // `cargo test` has no library, and only checks that this compiles.
     let Some(path) = std::env::var_os("DDL_C_LIBRARY") else {
+        eprintln!("nothing is measured: DDL_C_LIBRARY names no library");
         return Ok(());
     };
     // On the calling thread, as the library.
@@ -55,11 +55,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let [rust, c] = times.map(median);
     let ratio = c / rust;
-    eprintln!(
-        "Rust {:.3} ms, C {:.3} ms of processor time: {ratio:.3}",
-        1e3 * rust,
-        1e3 * c
-    );
+    let [rust, c] = [rust, c].map(|seconds| 1e3 * seconds);
+    eprintln!("Rust {rust:.3} ms, C {c:.3} ms of processor time: {ratio:.3}");
     match most {
         Some(most) if ratio > most => Err(format!("C takes {ratio:.3} times as long, more than {most}").into()),
         _ => Ok(()),
@@ -68,14 +65,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Five rows of people who walk in different directions.
 fn track(i: usize) -> Vec<Position> {
-    let (row, place) = (i / 5, i % 5);
-    let [from, along] = [
-        [3.0 * place as f64, 2.0 * row as f64],
-        [(i as f64).cos(), (i as f64).sin()],
-    ];
-    (0..8)
-        .map(|t| [0, 1].map(|axis| from[axis] + 0.5 * f64::from(t) * along[axis]))
-        .collect()
+    let [x, y, angle] = [3.0 * (i % 5) as f64, 2.0 * (i / 5) as f64, i as f64];
+    let walked = (0..8).map(|t| 0.5 * f64::from(t));
+    walked.map(|d| [x + d * angle.cos(), y + d * angle.sin()]).collect()
 }
 
 fn seconds(work: &mut impl FnMut()) -> f64 {

@@ -146,6 +146,7 @@ fn test(workspace: &Workspace, prefix: &Path, compiler: &str, trial: Trial) -> R
     let mut configure = workspace.program("cmake");
     configure.args(["-S", "crates/ddl-c/tests", option, "-B"]).arg(&folder);
     configure.arg(format!("-DCMAKE_PREFIX_PATH={}", prefix.display()));
+    configure.arg(concat!("-DVERSION=", env!("CARGO_PKG_VERSION")));
     let plus = if compiler == "gcc" { "g++" } else { "clang++" };
     for (language, name) in [("C", compiler), ("CXX", plus)] {
         configure.arg(format!("-DCMAKE_{language}_COMPILER={name}"));
