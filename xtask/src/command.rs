@@ -1,6 +1,7 @@
 //! The commands, one per file.
 
 mod benchmark;
+mod c;
 mod ci;
 mod data;
 mod docs;
@@ -32,6 +33,8 @@ pub(crate) enum Command {
     Ci,
     /// Build the wheel of the Python package and test it in a virtual environment
     Python(python::Arguments),
+    /// Build and install the library for C and C++
+    C(c::Arguments),
     /// Build the documentation site: the guide and every crate's interface, with every link checked
     Docs,
     /// Run what takes too long for `ci`; without a name, list it
@@ -48,6 +51,7 @@ impl Command {
             Self::Check => ci::check(workspace),
             Self::Ci => ci::run(workspace),
             Self::Python(arguments) => arguments.run(workspace),
+            Self::C(arguments) => arguments.run(workspace),
             Self::Docs => docs::print(workspace),
             Self::Nightly(arguments) => arguments.run(workspace),
         }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
 
-use super::{benchmark, docs, python, set_up, test};
+use super::{benchmark, c, docs, python, set_up, test};
 use crate::browser;
 use crate::process::{read, run as run_command};
 use crate::recordings;
@@ -19,7 +19,7 @@ type Check = (&'static str, fn(&Workspace) -> Result<()>);
 /// The features of everything that is built here.
 const FEATURES: &str = "ddl-cli/torch,ddl-tests/torch";
 
-const CHECKS: [Check; 10] = [
+const CHECKS: [Check; 11] = [
     ("text", text),
     ("libtorch, recordings, browser, Python packages", bring_all_in),
     ("dependencies and packages", dependencies),
@@ -33,6 +33,7 @@ const CHECKS: [Check; 10] = [
     ("report page in a browser", report_page),
     ("benchmark", benchmark::smoke),
     ("Python package", python::check),
+    ("library for C and C++", c::check),
     // The tests are last, so that their results are at the end of the log.
     ("tests", test::run_all),
 ];
@@ -83,6 +84,7 @@ fn bring_all_in(workspace: &Workspace) -> Result<()> {
     // One after the other, because both may call apt-get.
     let programs = |workspace: &Workspace| {
         browser::find_or_install()?;
+        c::prepare()?;
         python::prepare(workspace)
     };
     let jobs: [fn(&Workspace) -> Result<()>; 4] = [set_up, recordings::bring_in, fetch, programs];

@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 
-use super::{docs, python, set_up, test};
+use super::{c, docs, python, set_up, test};
 use crate::browser;
 use crate::debian;
 use crate::libtorch::{self, Request};
@@ -41,6 +41,8 @@ enum Check {
     Wheel,
     /// The ROS 2 node against another DDS for a minute: nothing lost, latency
     Node,
+    /// The library for C and C++ that users get: two compilers, sanitizers, valgrind, size, memory, time
+    C,
     /// Every page of the documentation in a browser
     Site,
     /// All of these
@@ -87,6 +89,7 @@ impl Check {
             Self::Packages => packages(workspace),
             Self::Wheel => python::Arguments::default().run(workspace),
             Self::Node => python::check_node_for_long(workspace),
+            Self::C => c::check_all(workspace),
             Self::Site => {
                 docs::build(workspace, docs::ALONE)?;
                 let [site, pictures] = [docs::SITE, "target/screenshots"].map(|folder| workspace.path(folder));

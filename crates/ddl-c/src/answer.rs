@@ -1,0 +1,242 @@
+//! A forecast, and what is computed from it, in arrays that are filled again and again.
+
+use crate::boundary::{Failure, c_text};
+use crate::layout::{ddl_cells, ddl_misfit, ddl_occupancy, ddl_point, ddl_risks, ddl_view};
+use crate::model::Threads;
+use ddl::Forecast;
+use ddl::data::{HORIZON, Misfit, OBSERVED, ObservationQuality, Window};
+use ddl::scene::{Area, Futures, Occupancy, Plan};
+use std::ffi::CString;
+use std::ptr;
+use std::sync::Arc;
+
+#[derive(Debug, Default)]
+pub(crate) struct Answer {
+    held: Option<Held>,
+    ids: Vec<i64>,
+    numbers: Packed,
+    certified: Vec<bool>,
+    misfits: Vec<ddl_misfit>,
+    warning: CString,
+    pub(crate) view: ddl_view,
+    pub(crate) radii: Vec<f64>,
+    risk_numbers: Packed,
+    pub(crate) risks: ddl_risks,
+    times: Vec<f64>,
+    probabilities: Vec<f32>,
+    pub(crate) occupancy: ddl_occupancy,
+}
+
+#[derive(Debug)]
+pub(crate) struct Held {
+    pub(crate) window: Window,
+    pub(crate) forecast: Forecast,
+    pub(crate) is_joint: bool,
+    pub(crate) threads: Arc<Threads>,
+}
+
+/// What a live frame says besides its forecast.
+#[derive(Debug, Default)]
+pub(crate) struct Notes<'a> {
+    pub(crate) misfits: &'a [Misfit],
+    pub(crate) remembered: usize,
+    pub(crate) warning: Option<String>,
+}
+
+/// Arrays of numbers, one after the other.
+#[derive(Debug, Default)]
+struct Packed {
+    numbers: Vec<f64>,
+    starts: Vec<usize>,
+}
+
+impl Packed {
+    fn clear(&mut self) {
+        self.numbers.clear();
+        self.starts.clear();
+    }
+
+    fn add(&mut self, numbers: impl IntoIterator<Item = f64>) {
+        self.starts.push(self.numbers.len());
+        self.numbers.extend(numbers);
+    }
+
+    /// The addresses of the arrays; null for one without numbers.
+    fn arrays<const N: usize>(&self) -> [*const f64; N] {
+        let start = |array: usize| self.starts.get(array).copied().unwrap_or(self.numbers.len());
+        std::array::from_fn(|array| address(&self.numbers[start(array)..start(array + 1)]))
+    }
+}
+
+impl Answer {
+    /// Holds this forecast instead of the last; `None` where nobody can be forecast.
+    pub(crate) fn hold(&mut self, held: Option<Held>, notes: &Notes<'_>) {
+        self.ids.clear();
+        self.certified.clear();
+        self.numbers.clear();
+        if let Some(Held { window, forecast, .. }) = &held {
+            self.fill(window, forecast);
+        }
+        let misfits = notes
+            .misfits
+            .iter()
+            .map(|misfit| (misfit.pedestrian.0, misfit.distance));
+        self.misfits.clear();
+        self.misfits
+            .extend(misfits.map(|(id, distance)| ddl_misfit { id, distance }));
+        self.warning = c_text(notes.warning.as_deref().unwrap_or_default());
+        let [past, age, uncertainty, paths, weights, goals, familiarity, spread] = self.numbers.arrays();
+        self.view = ddl_view {
+            pedestrians: self.ids.len(),
+            hypotheses: held.as_ref().map_or(0, |held| held.forecast.hypotheses()),
+            ids: address(&self.ids),
+            past: past.cast(),
+            age,
+            uncertainty,
+            paths: paths.cast(),
+            weights,
+            goals: goals.cast(),
+            certified: address(&self.certified),
+            familiarity,
+            spread,
+            misfits: address(&self.misfits),
+            misfit_count: self.misfits.len(),
+            remembered: notes.remembered,
+            warning: notes.warning.as_ref().map_or(ptr::null(), |_| self.warning.as_ptr()),
+        };
+        self.held = held;
+    }
+
+    fn fill(&mut self, window: &Window, forecast: &Forecast) {
+        let qualities = || (0..window.len()).map(|i| window.quality(i));
+        let past = (0..window.len()).flat_map(|i| &window.observed(i)[..OBSERVED]);
+        let paths = pairs(forecast).flat_map(|(i, k)| forecast.hypothesis(i, k));
+        self.ids.extend(window.pedestrians().iter().map(|id| id.0));
+        self.numbers.add(past.copied().flatten());
+        self.numbers.add(qualities().map(|quality| quality.age));
+        self.numbers.add(qualities().map(ObservationQuality::uncertainty));
+        self.numbers.add(paths.copied().flatten());
+        self.numbers.add(pairs(forecast).map(|(i, k)| forecast.weight(i, k)));
+        self.numbers
+            .add(pairs(forecast).filter_map(|(i, k)| forecast.goal(i, k)).flatten());
+        self.numbers
+            .add((0..window.len()).filter_map(|i| forecast.familiarity(i)));
+        let spread = |i| (0..HORIZON).filter_map(move |t| forecast.scale(i, t));
+        self.numbers.add((0..window.len()).flat_map(spread));
+        self.certified
+            .extend(pairs(forecast).filter_map(|(i, k)| forecast.certified(i, k)));
+    }
+
+    /// Radii `[N][K][12]` of the discs around the hypotheses in the region of a level; NaN where there is none.
+    pub(crate) fn compute_radii(&mut self, level: f64) -> Result<(), Failure> {
+        self.radii.clear();
+        let Some(Held { forecast, .. }) = &self.held else {
+            return Ok(());
+        };
+        let none = || Failure::invalid("the hypotheses of this model have no weights, and so no regions");
+        let [low, high] = forecast.regions().ok_or_else(none)?.range();
+        if !(low..=high).contains(&level) {
+            return Err(Failure::invalid(format!(
+                "level is {level}; it must be a probability from {low} to {high}"
+            )));
+        }
+        let steps = pairs(forecast).flat_map(|(i, k)| (0..HORIZON).map(move |t| (i, k, t)));
+        let radius = |(i, k, t)| forecast.region_radius(i, k, t, level).unwrap_or(f64::NAN);
+        self.radii.extend(steps.map(radius));
+        Ok(())
+    }
+
+    /// The risk of each plan, which pedestrians see or not.
+    pub(crate) fn compute_risks(
+        &mut self,
+        plans: &[Plan],
+        within: f64,
+        ego: Option<i64>,
+        seen: bool,
+    ) -> Result<(), Failure> {
+        let (held, futures) = self.joint()?;
+        let index = |id| {
+            let index = held.window.pedestrians().iter().position(|known| known.0 == id);
+            index.ok_or_else(|| Failure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
+        };
+        let ego = ego.map(index).transpose()?;
+        let risks = held.threads.run(|| {
+            let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
+            risks(&futures, plans, within, ego).map_err(Failure::invalid)
+        })?;
+        let numbers = &mut self.risk_numbers;
+        numbers.clear();
+        numbers.add(risks.iter().map(|risk| risk.total));
+        numbers.add(risks.iter().flat_map(|risk| &risk.pedestrians).copied());
+        numbers.add(risks.iter().flat_map(|risk| risk.steps));
+        numbers.add(risks.iter().flat_map(|risk| risk.until));
+        let [total, of_each, steps, until] = numbers.arrays();
+        let (plans, pedestrians) = (plans.len(), futures.pedestrians());
+        self.risks = ddl_risks {
+            plans,
+            pedestrians,
+            total,
+            of_each,
+            steps,
+            until,
+        };
+        Ok(())
+    }
+
+    /// Grids of the probability that a cell is occupied.
+    pub(crate) fn compute_occupancy(&mut self, cells: &ddl_cells<'_>) -> Result<(), Failure> {
+        let (held, futures) = self.joint()?;
+        let threads = Arc::clone(&held.threads);
+        let area = match cells.corners {
+            Some(corners) => {
+                let [low, high] = corners.map(|corner| [corner.x, corner.y]);
+                Area::new(low, high, cells.cell)
+            }
+            None => futures.area(cells.margin, cells.cell),
+        };
+        let area = area.map_err(Failure::invalid)?;
+        let times = Occupancy::every(cells.every).map_err(Failure::invalid)?;
+        let mut probabilities = std::mem::take(&mut self.probabilities);
+        probabilities.clear();
+        self.probabilities = threads.run(|| {
+            let grids = futures
+                .occupancy(&area, &times, cells.radius)
+                .map_err(Failure::invalid)?;
+            probabilities.extend(grids.flat_map(|grid| grid.probabilities));
+            Ok(probabilities)
+        })?;
+        self.times = times;
+        let ([width, height], [x, y]) = (area.size(), area.origin());
+        self.occupancy = ddl_occupancy {
+            times: self.times.len(),
+            width,
+            height,
+            origin: ddl_point { x, y },
+            cell: area.cell(),
+            time: address(&self.times),
+            probabilities: address(&self.probabilities),
+        };
+        Ok(())
+    }
+
+    fn joint(&self) -> Result<(&Held, Futures), Failure> {
+        let held = self.held.as_ref().filter(|held| held.is_joint);
+        let words = "risk and occupancy need a forecast of somebody, with joint set in its request";
+        let held = held.ok_or_else(|| Failure::invalid(words))?;
+        let futures = Futures::new(&held.window, held.forecast.clone()).map_err(Failure::invalid)?;
+        Ok((held, futures))
+    }
+}
+
+fn pairs(forecast: &Forecast) -> impl Iterator<Item = (usize, usize)> + use<> {
+    let hypotheses = forecast.hypotheses();
+    (0..forecast.pedestrians() * hypotheses).map(move |pair| (pair / hypotheses, pair % hypotheses))
+}
+
+fn address<T>(values: &[T]) -> *const T {
+    if values.is_empty() {
+        ptr::null()
+    } else {
+        values.as_ptr()
+    }
+}

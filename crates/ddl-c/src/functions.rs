@@ -1,0 +1,261 @@
+//! The functions of `ddl.h`. Pointers to one value are references of Rust here, null being `None`.
+
+#![allow(unsafe_code, reason = "functions of C")]
+#![allow(
+    clippy::missing_safety_doc,
+    reason = "`ddl.h` begins with what holds for all pointers"
+)]
+
+use crate::answer::Notes;
+use crate::boundary::{Failure, guarded, last_error, needed, text, values};
+use crate::layout::{
+    ddl_cells, ddl_forecast, ddl_live, ddl_live_options, ddl_model, ddl_observation, ddl_occupancy, ddl_plan,
+    ddl_plan_point, ddl_point, ddl_request, ddl_risks, ddl_status, ddl_view,
+};
+use crate::live::Live;
+use crate::model::{Model, Request};
+use ddl::GivenPlan;
+use ddl::data::{OBSERVED, PedestrianId, Window};
+use ddl::scene::{Plan, PlanPoint};
+use std::ffi::c_char;
+
+/// The version of the library, such as "0.2.0".
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_version() -> *const c_char {
+    concat!(env!("CARGO_PKG_VERSION"), "\0").as_ptr().cast()
+}
+
+/// What was wrong in the last call on this thread that failed: what, where, and what to do. Valid until the next
+/// failure on this thread; empty before the first.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_last_error() -> *const c_char {
+    last_error()
+}
+
+/// Takes so many bytes from the system now, for the pool of the library, so that later calls need not: 24 MB are enough
+/// for 25 pedestrians. Without the feature `pool` it has no effect.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_reserve(bytes: usize) -> ddl_status {
+    guarded(|| {
+        let mut block = Vec::new();
+        block.try_reserve_exact(bytes).map_err(Failure::invalid)?;
+        // Pages are taken when they are written. The pool keeps the block that is freed here.
+        block.resize(bytes, 1_u8);
+        std::hint::black_box(&block);
+        Ok(())
+    })
+}
+
+/// Opens a model: "world", which is built in, a packed model, or the folder of a run. With `threads` 1 everything is
+/// computed on the thread that calls, with its priority; each thread that calls takes some kB for good. Otherwise the
+/// model has so many threads of its own; 0 for one on each core.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ddl_model_open(
+    name: *const c_char,
+    threads: usize,
+    model: Option<&mut *mut ddl_model>,
+) -> ddl_status {
+    guarded(|| {
+        // SAFETY: a text of the caller.
+        let name = needed(unsafe { text(name, "name")? }, "name")?;
+        let model = needed(model, "model")?;
+        *model = Box::into_raw(Box::new(ddl_model(Model::open(name, threads)?)));
+        Ok(())
+    })
+}
+
+/// Frees a model; live tracks keep what they need of it. Null is nothing, as in all functions that free.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_model_free(_: Option<Box<ddl_model>>) {}
+
+/// A place for forecasts. It takes memory when it is filled, and uses it again.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_forecast_new() -> Box<ddl_forecast> {
+    Box::default()
+}
+
+/// Frees a forecast with everything that it has shown.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_forecast_free(_: Option<Box<ddl_forecast>>) {}
+
+/// Forecasts `count` pedestrians whose last 8 positions are known: `past` is `[count][8]`, 0.4 s apart, the present
+/// last. They have the ids 0, 1, 2 and so on. `request` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ddl_model_forecast(
+    model: Option<&ddl_model>,
+    past: *const ddl_point,
+    count: usize,
+    request: Option<&ddl_request<'_>>,
+    forecast: Option<&mut ddl_forecast>,
+) -> ddl_status {
+    guarded(|| {
+        let (model, forecast) = (&needed(model, "model")?.0, needed(forecast, "forecast")?);
+        // SAFETY: positions of the caller, and those of a plan.
+        let (past, request) = unsafe { (values(past, count.saturating_mul(OBSERVED), "past")?, asked(request)?) };
+        let tracks = past.chunks_exact(OBSERVED);
+        let tracks = tracks.map(|track| track.iter().map(|position| [position.x, position.y]).collect());
+        let ids = (0..count as i64).map(PedestrianId).collect();
+        let window = Window::new("past", 0, 1, ids, tracks.collect()).map_err(Failure::invalid)?;
+        forecast
+            .0
+            .hold(Some(model.forecast(window, &request)?), &Notes::default());
+        Ok(())
+    })
+}
+
+/// Begins to observe a place. `options` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ddl_live_new(
+    model: Option<&ddl_model>,
+    options: Option<&ddl_live_options<'_>>,
+    live: Option<&mut *mut ddl_live>,
+) -> ddl_status {
+    guarded(|| {
+        let (model, options, live) = (needed(model, "model")?, options.copied(), needed(live, "live")?);
+        let options = options.unwrap_or_default();
+        // SAFETY: a text of the caller.
+        let memory = unsafe { text(options.memory, "memory")? };
+        *live = Box::into_raw(Box::new(ddl_live(Live::new(&model.0, &options, memory)?)));
+        Ok(())
+    })
+}
+
+/// Adds a frame with all pedestrians that are seen, in any order, and forecasts into `forecast`: nobody (N = 0) where
+/// nobody can be forecast. `at` is the time in seconds, or the number of the frame, later than the last. After an error
+/// the tracks are unchanged: the frame can be given again without the fault. `request` may be null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ddl_live_observe(
+    live: Option<&ddl_live>,
+    at: f64,
+    observations: *const ddl_observation,
+    count: usize,
+    request: Option<&ddl_request<'_>>,
+    forecast: Option<&mut ddl_forecast>,
+) -> ddl_status {
+    guarded(|| {
+        let (live, forecast) = (&needed(live, "live")?.0, &mut needed(forecast, "forecast")?.0);
+        // SAFETY: rows of the caller, and those of a plan.
+        let (rows, request) = unsafe { (values(observations, count, "observations")?, asked(request)?) };
+        let seen = rows
+            .iter()
+            .map(|row| (PedestrianId(row.id), [row.position.x, row.position.y]));
+        live.observe(at, seen.collect(), &request, forecast)
+    })
+}
+
+/// Forgets all tracks, as when a tracker restarts; the memory of the place is kept.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_live_clear(live: Option<&ddl_live>) -> ddl_status {
+    guarded(|| {
+        needed(live, "live")?.0.clear();
+        Ok(())
+    })
+}
+
+/// Writes the memory of the place and closes its file; nothing without one. While frames come it is written once a
+/// minute.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_live_close(live: Option<&ddl_live>) -> ddl_status {
+    guarded(|| needed(live, "live")?.0.close())
+}
+
+/// Frees live tracks. It does not write the memory: `ddl_live_close` does.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_live_free(_: Option<Box<ddl_live>>) {}
+
+/// What was forecast last; null for null. Valid until the next forecast into the handle.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_forecast_view(forecast: Option<&ddl_forecast>) -> Option<&ddl_view> {
+    forecast.map(|forecast| &forecast.0.view)
+}
+
+/// Radii (m) `[N][K][12]` of the discs around the hypotheses that together hold a pedestrian with the probability
+/// `level`; NaN where there is no disc. Valid until the next call for radii of the handle.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_forecast_radii(
+    forecast: Option<&mut ddl_forecast>,
+    level: f64,
+    radii: Option<&mut *const f64>,
+) -> ddl_status {
+    guarded(|| {
+        let (forecast, radii) = (&mut needed(forecast, "forecast")?.0, needed(radii, "radii")?);
+        forecast.compute_radii(level)?;
+        *radii = forecast.radii.as_ptr();
+        Ok(())
+    })
+}
+
+/// The risk that somebody comes within `within` metres of the edge of each plan, from joint futures. People see a plan
+/// and keep away from it as from a pedestrian, unless `unseen`. `ego` is the id of the pedestrian who follows the
+/// plans; null if it is somebody else, such as a robot. Valid until the next call for risks of the handle.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ddl_forecast_risks(
+    forecast: Option<&mut ddl_forecast>,
+    plans: *const ddl_plan,
+    count: usize,
+    within: f64,
+    ego: Option<&i64>,
+    unseen: bool,
+    risks: Option<&mut *const ddl_risks>,
+) -> ddl_status {
+    guarded(|| {
+        let (forecast, risks) = (&mut needed(forecast, "forecast")?.0, needed(risks, "risks")?);
+        // SAFETY: plans of the caller, with their rows.
+        let plans = unsafe { values(plans, count, "plans")? }
+            .iter()
+            .map(|plan| unsafe { planned(plan) });
+        forecast.compute_risks(&plans.collect::<Result<Vec<_>, _>>()?, within, ego.copied(), !unseen)?;
+        *risks = &raw const forecast.risks;
+        Ok(())
+    })
+}
+
+/// Grids of the probability that a pedestrian covers the middle of a cell, from joint futures, at 0, `every`, .. 4.8 s.
+/// Valid until the next call for occupancy of the handle.
+#[unsafe(no_mangle)]
+pub extern "C" fn ddl_forecast_occupancy(
+    forecast: Option<&mut ddl_forecast>,
+    cells: Option<&ddl_cells<'_>>,
+    occupancy: Option<&mut *const ddl_occupancy>,
+) -> ddl_status {
+    guarded(|| {
+        let (forecast, occupancy) = (&mut needed(forecast, "forecast")?.0, needed(occupancy, "occupancy")?);
+        forecast.compute_occupancy(needed(cells, "cells")?)?;
+        *occupancy = &raw const forecast.occupancy;
+        Ok(())
+    })
+}
+
+/// # Safety
+/// The rows of its plan are the caller's.
+unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, Failure> {
+    let Some(request) = request else {
+        return Ok(Request::Hypotheses);
+    };
+    let is_planned = !request.plan.points.is_null() || request.plan.count > 0;
+    if !request.joint {
+        let words = "only joint futures respond to a plan: set joint, or leave out the plan";
+        return if is_planned {
+            Err(Failure::invalid(words))
+        } else {
+            Ok(Request::Hypotheses)
+        };
+    }
+    // SAFETY: the caller's.
+    let plan = is_planned.then(|| unsafe { planned(&request.plan) }).transpose()?;
+    let ego = request.ego.map(|&id| PedestrianId(id).into());
+    Ok(Request::Joint(plan.map(|plan| GivenPlan { plan, ego })))
+}
+
+/// # Safety
+/// The rows of the plan are the caller's.
+unsafe fn planned(plan: &ddl_plan) -> Result<Plan, Failure> {
+    // SAFETY: the caller's.
+    let rows = unsafe { values(plan.points, plan.count, "points of a plan")? };
+    let point = |&ddl_plan_point { time, position, radius }: &ddl_plan_point| PlanPoint {
+        time,
+        position: [position.x, position.y],
+        radius,
+    };
+    Plan::new(rows.iter().map(point).collect()).map_err(Failure::invalid)
+}

@@ -1,0 +1,82 @@
+//! A loaded model, the threads that it computes on, and what is asked of it.
+
+use crate::answer::Held;
+use crate::boundary::Failure;
+use ddl::data::Window;
+use ddl::{Ddl, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource};
+use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::path::Path;
+use std::sync::Arc;
+
+#[derive(Debug)]
+pub(crate) struct Model {
+    pub(crate) ddl: Arc<Ddl>,
+    pub(crate) threads: Arc<Threads>,
+}
+
+/// What to forecast.
+#[derive(Debug)]
+pub(crate) enum Request {
+    Hypotheses,
+    Joint(Option<GivenPlan>),
+}
+
+impl Model {
+    /// The built-in model of that name, or the model at that path.
+    pub(crate) fn open(name: &str, threads: usize) -> Result<Self, Failure> {
+        let threads = Arc::new(Threads::new(threads)?);
+        let source = ModelSource::named(Path::new(name));
+        let ddl = threads.run(|| Ddl::open(&source, DeviceChoice::Cpu).map_err(Failure::file))?;
+        let ddl = Arc::new(ddl);
+        Ok(Self { ddl, threads })
+    }
+
+    pub(crate) fn forecast(&self, window: Window, request: &Request) -> Result<Held, Failure> {
+        let forecast = || match request {
+            Request::Hypotheses => self.ddl.forecast(&window),
+            Request::Joint(given) => {
+                let scenes = self.ddl.forecast_scenes(std::slice::from_ref(&window), given.as_ref());
+                scenes.map(|mut scenes| scenes.remove(0))
+            }
+        };
+        let forecast = || forecast().map_err(|error: ForecastError| Failure::invalid(error));
+        Ok(Held {
+            forecast: self.threads.run(forecast)?,
+            window,
+            is_joint: matches!(request, Request::Joint(_)),
+            threads: Arc::clone(&self.threads),
+        })
+    }
+}
+
+/// Where a model computes.
+#[derive(Debug)]
+pub(crate) enum Threads {
+    /// On the thread that calls, with its priority and its processor.
+    Calling,
+    Own(ThreadPool),
+}
+
+impl Threads {
+    /// So many; 0 for one on each core.
+    fn new(count: usize) -> Result<Self, Failure> {
+        if count == 1 {
+            return Ok(Self::Calling);
+        }
+        let pool = ThreadPoolBuilder::new().num_threads(count).build();
+        pool.map(Self::Own).map_err(Failure::invalid)
+    }
+
+    pub(crate) fn run<T: Send>(&self, work: impl FnOnce() -> Result<T, Failure> + Send) -> Result<T, Failure> {
+        if let Self::Own(pool) = self {
+            return pool.install(work);
+        }
+        // Outside of a pool, rayon would start one with a thread on each core.
+        if rayon::current_thread_index().is_none() {
+            let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+            // It belongs to this thread for as long as that lives.
+            std::mem::forget(alone.map_err(Failure::invalid)?);
+        }
+        work()
+    }
+}
