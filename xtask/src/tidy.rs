@@ -16,7 +16,7 @@ const COLUMNS: usize = 120;
 const README: usize = 7_000;
 const CRATE_README: usize = 4_000;
 const PAGE: usize = 10_000;
-const ALL_PAGES: usize = 132_000;
+const ALL_PAGES: usize = 128_000;
 /// Names that do not describe the content.
 const EMPTY_NAMES: [&str; 6] = ["utils", "util", "common", "helpers", "helper", "misc"];
 /// The content of `datasets`: descriptions, and a simulated recording that a test generates again.
