@@ -2,6 +2,7 @@
 
 use crate::command::{Machine, ModelChoice};
 use crate::output;
+use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -70,7 +71,9 @@ impl View {
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
         });
         output::write_output(Some(&path), &page)?;
-        observed.warn_of_misfits();
+        if let Some(warning) = observed.misfits() {
+            tell(format_args!("{warning}"));
+        }
         if output::file_of(Some(&path)).is_none() {
             return Ok(());
         }

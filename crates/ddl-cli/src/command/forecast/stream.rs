@@ -1,16 +1,16 @@
 //! The commands that answer every moment of a file of tracks or of live tracks.
 
 use crate::command::forecast::live;
-use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts, warn_of_violation};
+use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::{Machine, ModelChoice};
 use crate::interrupt::Interrupt;
 use crate::output::{file_of, write_parts};
 use crate::telling::tell;
-use crate::tracks::TrackOptions;
+use crate::tracks::{TrackOptions, tell_what_was_estimated};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
-use ddl::{Ddl, DdlError};
+use ddl::{Ddl, DdlError, Moment};
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
@@ -130,7 +130,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     write_parts(stream.output.as_deref(), parts)?;
     state.unfamiliar.warn("");
     stream.warn_of_flood(lines, bytes);
-    observed.tell_what_was_estimated();
+    tell_what_was_estimated(&observed);
     Ok(())
 }
 
