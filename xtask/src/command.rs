@@ -8,6 +8,7 @@ mod nightly;
 mod python;
 mod setup;
 mod test;
+mod web;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -32,6 +33,8 @@ pub(crate) enum Command {
     Ci,
     /// Build the wheel of the Python package and test it in a virtual environment
     Python(python::Arguments),
+    /// Build the page and the npm package that forecast in a browser
+    Web(web::Arguments),
     /// Build the documentation site: the guide and every crate's interface, with every link checked
     Docs,
     /// Run what takes too long for `ci`; without a name, list it
@@ -48,6 +51,7 @@ impl Command {
             Self::Check => ci::check(workspace),
             Self::Ci => ci::run(workspace),
             Self::Python(arguments) => arguments.run(workspace),
+            Self::Web(arguments) => arguments.run(workspace),
             Self::Docs => docs::print(workspace),
             Self::Nightly(arguments) => arguments.run(workspace),
         }
