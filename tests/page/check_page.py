@@ -198,6 +198,12 @@ def check_player(opened, moments):
     first = moments[0]
     check_pedestrian(opened, first, 0)
 
+    # At the opening moment the speed is that of the last observed step.
+    pedestrian = first["pedestrians"][start]
+    (x, y), speed = pedestrian["observed"][7], math.dist(*pedestrian["observed"][6:8]) / 0.4
+    assert opened.time() == 7
+    assert opened.text("#now-words") == f"observed at ({x:.2f}, {y:.2f}) m, {speed:.2f} m/s", opened.text("#now-words")
+
     # The player plays, by button and by key.
     before, picture, words = opened.time(), opened.picture(), opened.text("#now-words")
     page.click("#play")
@@ -368,6 +374,25 @@ def check_reduced_motion(opened):
     assert all(time == int(time) and 0 <= time <= 19 for time in times), times
 
 
+def check_unclipped(opened):
+    """Choices and the list of hypotheses fit into their boxes, whatever the width."""
+    clipped = opened.page.evaluate(
+        """() => {
+            const pen = document.createElement("canvas").getContext("2d");
+            const cut = (select) => {
+                const { fontSize, fontFamily, paddingLeft, paddingRight } = getComputedStyle(select);
+                pen.font = `${fontSize} ${fontFamily}`;
+                const room = select.clientWidth - parseFloat(paddingLeft) - parseFloat(paddingRight) - ARROW;
+                return pen.measureText(select.selectedOptions[0].text).width > room;
+            };
+            const table = document.querySelector(".hypotheses .table");
+            return [...[...document.querySelectorAll(".choices select")].filter(cut).map((select) => select.id),
+                ...(table.scrollWidth > table.clientWidth ? [`the list of hypotheses, ${table.scrollWidth} px`] : [])];
+        }""".replace("ARROW", "18")
+    )
+    assert not clipped, clipped
+
+
 def check_looks(opened, width):
     overflow = opened.page.evaluate("Math.max(document.documentElement.scrollWidth, document.body.scrollWidth)")
     assert overflow <= width, f"the body is {overflow} px wide in a window of {width} px"
@@ -458,6 +483,7 @@ def main():
                 for scheme in ("light", "dark"):
                     with Opened(browser, page, viewport, scheme) as opened:
                         check_looks(opened, viewport["width"])
+                        check_unclipped(opened)
                         if size == "wide" and scheme == "light":
                             spent = opened.page.evaluate("window.ddlPlayer.measure(50)")
                             print(f"{name}: a picture with the hypotheses of all pedestrians takes {spent:.1f} ms")

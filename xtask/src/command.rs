@@ -9,6 +9,7 @@ mod nightly;
 mod python;
 mod setup;
 mod test;
+mod web;
 
 use anyhow::Result;
 use clap::Subcommand;
@@ -35,6 +36,8 @@ pub(crate) enum Command {
     Python(python::Arguments),
     /// Build and install the library for C and C++
     C(c::Arguments),
+    /// Build the page and the npm package that forecast in a browser
+    Web(web::Arguments),
     /// Build the documentation site: the guide and every crate's interface, with every link checked
     Docs,
     /// Run what takes too long for `ci`; without a name, list it
@@ -52,6 +55,7 @@ impl Command {
             Self::Ci => ci::run(workspace),
             Self::Python(arguments) => arguments.run(workspace),
             Self::C(arguments) => arguments.run(workspace),
+            Self::Web(arguments) => arguments.run(workspace),
             Self::Docs => docs::print(workspace),
             Self::Nightly(arguments) => arguments.run(workspace),
         }

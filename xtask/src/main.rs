@@ -13,6 +13,7 @@ mod libtorch;
 mod process;
 mod python;
 mod recordings;
+mod rust_target;
 mod tidy;
 mod tools;
 mod workspace;

@@ -3,7 +3,8 @@
 use crate::telling::{self, tell};
 use crate::units::{ReadRecording, Units};
 use anyhow::{Context as _, bail};
-use ddl::data::{Clock, Misfit, PlausibilityWarning, Recording};
+use ddl::data::PlausibilityWarning;
+use ddl::{OWN_CLOCKS, in_frames, words_of_misfits, words_of_warning};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
@@ -118,7 +119,7 @@ pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
         let observed = recording.observe_each(recording.live_tracks(), |_| ());
         let warning = recording.speed_warning();
         let misfits = words_of_misfits(recording, *clock, &observed.misfits, warning.as_ref());
-        let warning = warning.map(|warning| words(&in_frames(*clock, warning)));
+        let warning = warning.map(|warning| words_of_warning(&in_frames(*clock, warning)));
         warnings.extend(
             warning
                 .into_iter()
@@ -131,49 +132,6 @@ pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
     tell_grouped("warning", warnings);
 }
 
-/// What is assumed of recordings without common frames.
-pub(crate) const OWN_CLOCKS: &str = "each pedestrian has a clock of its own: moments are about 0.4 s apart";
-
-/// The warning with frame numbers of the file.
-pub(crate) fn in_frames(clock: Clock, warning: PlausibilityWarning) -> PlausibilityWarning {
-    match warning {
-        PlausibilityWarning::Jump(mut fastest) => {
-            fastest.frame = clock.number(fastest.frame).nearest();
-            PlausibilityWarning::Jump(fastest)
-        }
-        PlausibilityWarning::NoSteps { frame_step } => PlausibilityWarning::NoSteps {
-            frame_step: clock.number(frame_step).nearest(),
-        },
-        other => other,
-    }
-}
-
-/// A sentence about rows that do not fit their tracks. With a warning of fast steps, nearly all positions are in other
-/// units.
-pub(crate) fn words_of_misfits(
-    recording: &Recording,
-    clock: Clock,
-    misfits: &[Misfit],
-    warning: Option<&PlausibilityWarning>,
-) -> Option<String> {
-    if matches!(warning, Some(PlausibilityWarning::Fast { .. })) {
-        return None;
-    }
-    Misfit::words(misfits, |misfit| {
-        let name = recording.names().of(misfit.pedestrian);
-        format!("pedestrian {name} at frame {}", clock.number(misfit.tick))
-    })
-}
-
 pub(crate) fn warn_of(warning: &PlausibilityWarning) {
-    tell(format_args!("warning: {}", words(warning)));
-}
-
-pub(crate) fn words(warning: &PlausibilityWarning) -> String {
-    let options = match warning {
-        PlausibilityWarning::Fast { .. } => " (--unit, --homography, --fps)",
-        PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps { .. } => " (--fps)",
-        _ => "",
-    };
-    format!("{warning}{options}")
+    tell(format_args!("warning: {}", words_of_warning(warning)));
 }

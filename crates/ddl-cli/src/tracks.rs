@@ -2,20 +2,13 @@
 
 use crate::recordings;
 use crate::telling::tell;
-use crate::units::{ReadRecording, Units, many_frames};
+use crate::units::Units;
 use anyhow::bail;
 use clap::Args;
-use ddl::RunConfig;
-use ddl::data::{
-    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
-    PlausibilityWarning, Recording, Window,
-};
+use ddl::data::{Completeness, LiveTracks};
+use ddl::{OWN_CLOCKS, ObservedTracks, RunConfig};
 use ddl_mcap::TrackTopic;
-use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-
-/// Noise (m) from which on observed paths are smoothed.
-pub(crate) const NOISY: f64 = 0.04;
 
 /// The tracks to read, and their units. A command that needs them requires `file`.
 #[derive(Debug, Args)]
@@ -45,22 +38,6 @@ pub(crate) struct TrackOptions {
     /// Only the last frame with a forecast, instead of every frame
     #[arg(long, requires = "file")]
     last: bool,
-}
-
-#[derive(Debug)]
-pub(crate) struct ObservedTracks {
-    pub(crate) recording: Recording,
-    /// Its topic in a log.
-    pub(crate) topic: Option<TrackTopic>,
-    pub(crate) windows: Vec<Window>,
-    pub(crate) clock: Clock,
-    /// A fault that the speeds suggest, such as wrong units or a wrong rate, which give meaningless forecasts.
-    pub(crate) warning: Option<PlausibilityWarning>,
-    /// Rows that were left out, or began a track anew.
-    misfits: Vec<Misfit>,
-    noise: f64,
-    never_forecast: Vec<PedestrianId>,
-    whole: bool,
 }
 
 impl TrackOptions {
@@ -99,136 +76,35 @@ impl TrackOptions {
         Ok(self.units.or_those_of(run))
     }
 
-    /// Windows of 8 observed steps, one for each moment with pedestrians to forecast, for a run.
-    pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<ObservedTracks> {
+    /// Windows of 8 observed steps, one for each moment with pedestrians to forecast, for a run; of a log, its topic.
+    pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<(ObservedTracks, Option<TrackTopic>)> {
         let read = self.units.or_those_of(run).read(self.file())?;
         for note in read.notes.iter().chain(&read.guessed) {
             tell(format_args!("note: {note}"));
         }
-        let ReadRecording { recording, clock, .. } = read;
-        let mut tracks = self.windows_of(recording.live_tracks());
+        let mut tracks = self.windows_of(read.recording.live_tracks());
         if self.last && self.every.is_none() {
             // With clocks of their own, too, the last row is the last moment.
             tracks = tracks.with_interval(0.0);
         }
-        let (mut windows, mut is_forecast) = (Vec::new(), BTreeSet::new());
-        let observed = recording.observe_each(tracks, |window| {
-            is_forecast.extend(window.pedestrians().iter().copied());
-            if self.last {
-                windows.clear();
-            }
-            windows.push(window);
-        });
+        let observed = ObservedTracks::new((read.recording, read.clock), tracks, self.last);
         if !observed.has_common_frames && self.every.is_none() && !self.last {
-            tell(format_args!("note: {} (--every)", recordings::OWN_CLOCKS));
+            tell(format_args!("note: {OWN_CLOCKS} (--every)"));
         }
-        let warning = recording
-            .speed_warning()
-            .filter(|warning| !matches!(warning, PlausibilityWarning::NoSteps { .. }))
-            .map(|warning| recordings::in_frames(clock, warning));
-        if let Some(warning) = &warning {
+        if let Some(warning) = &observed.warning {
             recordings::warn_of(warning);
         }
-        if windows.is_empty() {
-            bail!(
-                "{}: no pedestrian {} (a step of 0.4 s is taken as {}); give --fps or --frame-step if frame numbers \
-                 are not 0.4 s apart, and --homography if positions are not in metres",
-                self.file().display(),
-                if self.whole {
-                    "was tracked for all 8 steps"
-                } else {
-                    "has two rows that fit, at most 2 s apart"
-                },
-                steps_in_words(clock)
-            );
+        if let Some(problem) = observed.problem() {
+            bail!("{}: {problem}", self.file().display());
         }
-        let mut never_forecast = recording.pedestrians();
-        never_forecast.retain(|pedestrian| !is_forecast.contains(pedestrian));
-        Ok(ObservedTracks {
-            recording,
-            topic: read.topic,
-            windows,
-            clock,
-            warning,
-            misfits: observed.misfits,
-            noise: observed.noise.metres(),
-            never_forecast,
-            whole: self.whole,
-        })
+        Ok((observed, read.topic))
     }
 }
 
-impl ObservedTracks {
-    /// Reports what was estimated and left out, because a forecast from two positions looks like any other.
-    pub(crate) fn tell_what_was_estimated(&self) {
-        let windows = self.windows.iter();
-        let qualities: Vec<ObservationQuality> = windows
-            .flat_map(|window| (0..window.len()).map(|i| window.quality(i)))
-            .collect();
-        let late = qualities.iter().filter(|quality| !quality.is_whole()).count();
-        let carried = qualities.iter().filter(|quality| quality.age > 0.0).count();
-        if late + carried > 0 {
-            tell(format_args!(
-                "note: of {} forecasts {late} are of pedestrians tracked for less than {OBSERVED} steps, and {carried} \
-                 of pedestrians last seen a little before (columns unseen and age); --whole and --max-age leave them \
-                 out",
-                qualities.len()
-            ));
-        }
-        if self.noise >= NOISY {
-            tell(format_args!(
-                "note: the positions are noisy, {:.0} cm on each axis: observed paths are smoothed",
-                100.0 * self.noise
-            ));
-        }
-        self.warn_of_misfits();
-        if !self.whole {
-            self.tell_who_is_missing();
-        }
-    }
-
-    /// Warns of positions that are left out.
-    pub(crate) fn warn_of_misfits(&self) {
-        let warning = self.warning.as_ref();
-        let words = recordings::words_of_misfits(&self.recording, self.clock, &self.misfits, warning);
-        if let Some(words) = words {
-            tell(format_args!("warning: {words}"));
-        }
-    }
-
-    fn tell_who_is_missing(&self) {
-        if let Some(&first) = self.never_forecast.first() {
-            tell(format_args!(
-                "note: {} of {} pedestrians are never forecast, first {}: a forecast needs two rows that fit, at most \
-                 2 s apart",
-                self.never_forecast.len(),
-                self.recording.pedestrians().len(),
-                self.recording.names().of(first)
-            ));
-        }
-        let Some(window) = self.windows.last() else {
-            return;
-        };
-        let last = window.frames()[OBSERVED - 1];
-        let rows = self.recording.at(last);
-        let is_missing = |row: &&Observation| !window.pedestrians().contains(&row.pedestrian);
-        let missing = rows.iter().filter(is_missing).count();
-        if missing > 0 {
-            tell(format_args!(
-                "note: {missing} of the {} pedestrians at frame {} are not forecast: it is their first row, or their \
-                 position is doubtful",
-                rows.len(),
-                self.clock.number(last)
-            ));
-        }
-    }
-}
-
-/// A step of 0.4 s as the file counts it.
-pub(crate) fn steps_in_words(clock: Clock) -> String {
-    match clock.step_number() {
-        FrameNumber::Whole(step) => many_frames(step),
-        step => format!("{step} frames"),
+/// Reports what was estimated and left out.
+pub(crate) fn tell_what_was_estimated(observed: &ObservedTracks) {
+    for line in observed.estimated() {
+        tell(format_args!("{line}"));
     }
 }
 

@@ -2,11 +2,10 @@
 
 use crate::output::shell_word;
 use crate::small_file;
-use crate::telling::many;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::data::{Clock, ColumnChoice, Format, Homography, Recording, TIME_STEP, is_vehicle, parse_columns};
-use ddl::{RunConfig, TrackUnits};
+use ddl::data::{Clock, ColumnChoice, Format, Homography, Recording, is_vehicle, parse_columns};
+use ddl::{RunConfig, TimedRecording, TrackUnits};
 use ddl_mcap::{TrackTopic, is_log, read_log};
 use std::path::{Path, PathBuf};
 
@@ -70,9 +69,6 @@ fn kept(text: &str) -> Result<String, String> {
 /// A recording, the name of its format and, of a log, the topic.
 type ReadFile = (Recording, &'static str, Option<TrackTopic>);
 
-/// Rates with a smaller relative difference count as equal.
-const SAME: f64 = 0.005;
-
 impl Units {
     /// These units. Units that neither options nor files give are taken from the training of the run, if it used own
     /// recordings.
@@ -102,7 +98,7 @@ impl Units {
 
     pub(crate) fn are_given(&self) -> bool {
         let of_columns = self.columns.is_some() || self.keep.is_some() || self.unit.is_some() || self.topic.is_some();
-        has_rate(&self.rate()) || self.homography.is_some() || of_columns
+        self.rate_given().is_some() || self.homography.is_some() || of_columns
     }
 
     /// What the options say of the columns of text.
@@ -125,13 +121,13 @@ impl Units {
 
     /// The option that gives the rate, with its value.
     pub(crate) fn rate_given(&self) -> Option<String> {
-        rate_option(&self.rate())
+        self.rate().rate_option()
     }
 
     pub(crate) fn as_options(&self) -> String {
         let homography = self.homography.as_ref();
         let homography = homography.map(|file| format!(" --homography {}", shell_word(file)));
-        let rate = rate_option(&self.rate()).map(|rate| format!(" {rate}"));
+        let rate = self.rate().rate_option().map(|rate| format!(" {rate}"));
         let columns = self.columns.as_ref().map(|columns| ("columns", columns.to_string()));
         let keep = self.keep.as_ref().map(|text| ("keep", text.clone()));
         let unit = self.unit.as_ref().map(|unit| ("unit", unit.clone()));
@@ -155,60 +151,24 @@ impl Units {
     /// Reads the recording in the file, in metres and ticks of its clock. The format is recognised. The file is read
     /// once, so that it may be a pipe.
     pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ReadRecording> {
-        let (recording, format, topic) = self.in_metres(file)?;
-        let place = || file.display().to_string();
-        let stated = recording.stated_clock().transpose().with_context(place)?;
-        if let (Some(option), Some(_)) = (self.rate_given(), recording.time_unit()) {
-            bail!(
-                "{}: the rows have times, and {option} gives a rate: leave it out",
-                place()
-            );
-        }
-        let notes = recording.notes().iter().cloned().chain(self.note_of_rate(&recording));
-        let notes: Vec<String> = notes.chain(self.note_of_run(stated.is_none())).collect();
-        let given = clock_of(&self.rate())?;
-        let clock = match given.or(stated) {
-            Some(clock) => Some(clock),
-            None => clock_of(&self.remembered)?,
-        };
-        let guessed = clock.is_none().then(|| {
-            let step = many_frames(recording.frame_step());
-            format!("a step of 0.4 s is taken as {step}; give --fps, --dt or --frame-step if this is wrong")
-        });
-        let clock = clock.map_or_else(|| Clock::with_frame_step(recording.frame_step()), Ok)?;
-        let recording = recording.on_clock(clock).with_context(place)?;
+        let (rows, format, topic) = self.in_metres(file)?;
+        let timed = TimedRecording::new(&rows, &self.rate(), &self.remembered);
+        let timed = timed.with_context(|| file.display().to_string())?;
+        let is_stated = rows.stated_clock().is_some();
         Ok(ReadRecording {
             format,
             topic,
-            recording,
-            clock,
-            guessed,
-            notes,
+            notes: timed.notes.into_iter().chain(self.note_of_run(!is_stated)).collect(),
+            recording: timed.recording,
+            clock: timed.clock,
+            guessed: timed.guessed,
         })
-    }
-
-    /// A note if the rate in the file differs from the one given, remembered or guessed.
-    fn note_of_rate(&self, recording: &Recording) -> Option<String> {
-        let (rate, told) = (recording.rate()?, recording.stated_frame_time()?);
-        let apart = recording.frame_step();
-        let of_step = |step: i64| TIME_STEP / step as f64;
-        let given = self.rate();
-        let otherwise = if has_rate(&given) { given } else { self.remembered };
-        let otherwise = frame_time(&otherwise).or(otherwise.frame_step.map(of_step));
-        let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
-        let scenes = format!("the file gives {rate} frames per second, and its frame numbers increase by {apart}");
-        let of_file = format!("--fps {}", rounded(1.0 / told));
-        match rate_option(&given) {
-            _ if same => None,
-            None => Some(format!("{scenes}: read as {of_file}")),
-            Some(option) => Some(format!("read as {option}, although {scenes} ({of_file})")),
-        }
     }
 
     /// A note about units taken from the run; `rate`: whether no file gives its rate.
     pub(crate) fn note_of_run(&self, rate: bool) -> Option<String> {
-        let rate = if rate && !has_rate(&self.rate()) {
-            rate_option(&self.remembered)
+        let rate = if rate && self.rate_given().is_none() {
+            self.remembered.rate_option()
         } else {
             None
         };
@@ -286,50 +246,17 @@ impl Units {
 
     /// The clock of live tracks, if options give it.
     pub(crate) fn live_clock(&self) -> anyhow::Result<Option<Clock>> {
-        clock_of(&self.rate())
+        Ok(self.rate().clock()?)
     }
 
     /// The clock from the run, with its description.
     pub(crate) fn remembered_live_clock(&self) -> anyhow::Result<Option<(Clock, String)>> {
-        let Some(rate) = rate_option(&self.remembered) else {
+        let Some(rate) = self.remembered.rate_option() else {
             return Ok(None);
         };
-        let clock = clock_of(&self.remembered)?;
+        let clock = self.remembered.clock()?;
         Ok(clock.map(|clock| (clock, format!("as in the run's training ({rate})"))))
     }
-}
-
-/// Seconds between consecutive frame numbers, if `fps` or `dt` is given.
-fn frame_time(units: &TrackUnits) -> Option<f64> {
-    units.dt.or(units.fps.map(|fps| 1.0 / fps))
-}
-
-fn has_rate(units: &TrackUnits) -> bool {
-    frame_time(units).is_some() || units.frame_step.is_some()
-}
-
-fn rate_option(rate: &TrackUnits) -> Option<String> {
-    let fps = rate.fps.map(|fps| format!("--fps {fps}"));
-    let dt = rate.dt.map(|dt| format!("--dt {dt}"));
-    let step = rate.frame_step.map(|step| format!("--frame-step {step}"));
-    dt.or(fps).or(step)
-}
-
-fn clock_of(rate: &TrackUnits) -> anyhow::Result<Option<Clock>> {
-    let clock = match (frame_time(rate), rate.frame_step) {
-        (Some(frame_time), _) => Clock::with_frame_time(frame_time)?,
-        (None, Some(step)) => Clock::with_frame_step(step)?,
-        (None, None) => return Ok(None),
-    };
-    Ok(Some(clock))
-}
-
-pub(crate) fn many_frames(count: i64) -> String {
-    many(count as usize, "frame", "frames")
-}
-
-fn rounded(number: f64) -> f64 {
-    (1e4 * number).round() / 1e4
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -160,6 +160,11 @@ impl LiveTracks {
         Self { completeness, ..self }
     }
 
+    /// How well the pedestrians of a window are observed.
+    pub fn completeness(&self) -> Completeness {
+        self.completeness
+    }
+
     /// The same tracks, in which pedestrians are carried on until their last row is so old (s). `None` changes nothing:
     /// the age is 0.4 s, or the time between the last rows of a pedestrian if that is longer. NaN and negative numbers
     /// count as 0: only pedestrians of the frame itself.

@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use fearless_simd::{Level, Simd as _};
+use fearless_simd::Level;
+#[cfg(target_arch = "x86_64")]
+use fearless_simd::Simd as _;
 
 use crate::simd::Kernel;
 

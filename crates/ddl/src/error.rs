@@ -11,6 +11,10 @@ pub enum DdlError {
     Data(#[from] ddl_data::DataError),
     #[error(transparent)]
     Live(#[from] ddl_data::LiveError),
+    #[error(transparent)]
+    Clock(#[from] ddl_data::ClockError),
+    #[error("the rows have times, and {option} gives a rate: leave it out")]
+    Rate { option: String },
     #[error(
         "the memory was made at {} frames per second ({memory} frames per step of 0.4 s), but these tracks have {} \
          ({camera} per step): use a memory of the same frame rate, or a new file", rate(*.memory), rate(*.camera)

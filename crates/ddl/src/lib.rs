@@ -27,6 +27,7 @@ mod goals;
 mod live;
 mod model;
 mod run;
+mod tracks;
 #[cfg(feature = "training")]
 mod training;
 mod trust;
@@ -73,6 +74,12 @@ pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal
 pub use run::track_units::TrackUnits;
 pub use run::training_data::fold_by_name;
 pub use run::validation_part::ValidationPart;
+pub use tracks::json_lines::{joint_lines, json_lines};
+pub use tracks::moment::Moment;
+pub use tracks::observed::{
+    NOISY, OWN_CLOCKS, ObservedTracks, in_frames, steps_in_words, words_of_misfits, words_of_warning,
+};
+pub use tracks::timed::TimedRecording;
 pub use trust::calibration::region_table;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 

@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 
-use super::{c, docs, python, set_up, test};
+use super::{c, docs, python, set_up, test, web};
 use crate::browser;
 use crate::debian;
 use crate::libtorch::{self, Request};
@@ -45,6 +45,8 @@ enum Check {
     C,
     /// Every page of the documentation in a browser
     Site,
+    /// The page and the npm package that forecast, in a browser and in node
+    Web,
     /// All of these
     All,
 }
@@ -95,6 +97,7 @@ impl Check {
                 let [site, pictures] = [docs::SITE, "target/screenshots"].map(|folder| workspace.path(folder));
                 browser::check(workspace, "tests/page/check_site.py", &site, Some(&pictures))
             }
+            Self::Web => web::build(workspace).and_then(|()| web::check(workspace)),
             Self::All => Ok(()),
         }
     }

@@ -194,10 +194,10 @@ fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String>
     let fast = warnings
         .iter()
         .find(|warning| matches!(warning, PlausibilityWarning::Fast { .. }));
-    let misfits = recordings::words_of_misfits(recording, clock, &summary.misfits, fast);
+    let misfits = ddl::words_of_misfits(recording, clock, &summary.misfits, fast);
     let warnings = warnings
         .into_iter()
-        .map(|warning| recordings::words(&recordings::in_frames(clock, warning)));
+        .map(|warning| ddl::words_of_warning(&ddl::in_frames(clock, warning)));
     warnings.chain(misfits).collect()
 }
 

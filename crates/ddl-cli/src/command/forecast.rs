@@ -3,7 +3,6 @@
 mod arguments;
 mod first_rows;
 mod frames;
-mod json_lines;
 mod kept_memory;
 mod left_out;
 mod live;
@@ -14,5 +13,5 @@ mod told_once;
 
 pub(crate) use arguments::ForecastCommand;
 pub(crate) use kept_memory::file_stem;
-pub(crate) use moment::{Moment, StreamState};
+pub(crate) use moment::StreamState;
 pub(crate) use stream::{Answer, OutputFormat, StreamOptions, answer};

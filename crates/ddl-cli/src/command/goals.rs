@@ -2,7 +2,7 @@
 
 use crate::command::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::output::{table_metres, write_output};
-use crate::tracks::{ObservedTracks, TrackOptions};
+use crate::tracks::{TrackOptions, tell_what_was_estimated};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::{FrameNumber, OBSERVED, PedestrianName};
@@ -88,10 +88,10 @@ impl Goals {
                 }
                 self.machine.prepare_for_little()?;
                 let model = self.model.load_goals(self.machine.device)?;
-                let observed = tracks.observed(model.config())?;
+                let (observed, _) = tracks.observed(model.config())?;
                 let goals = model.goals(&observed.windows)?;
                 let text = csv(&observed, &goals)?;
-                observed.tell_what_was_estimated();
+                tell_what_was_estimated(&observed);
                 text
             }
             None => bail!("give a file of TRACKS to estimate goals for, or --measure test"),
@@ -123,7 +123,7 @@ impl Goals {
     }
 }
 
-fn csv(observed: &ObservedTracks, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
+fn csv(observed: &ddl::ObservedTracks, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (window, sets) in observed.windows.iter().zip(sets) {
         let last = observed.clock.number(window.frames()[OBSERVED - 1]);

@@ -1,8 +1,9 @@
 //! `ddl occupancy`: where somebody will be.
 
-use crate::command::forecast::{Answer, Moment, StreamOptions, StreamState, answer, file_stem};
+use crate::command::forecast::{Answer, StreamOptions, StreamState, answer, file_stem};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
+use ddl::Moment;
 use ddl::data::write_atomically;
 use ddl::scene::{Area, Futures, Occupancy};
 use serde_json::Value;

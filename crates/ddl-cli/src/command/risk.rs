@@ -1,10 +1,11 @@
 //! `ddl risk`: how likely somebody comes close to a plan.
 
-use crate::command::forecast::{Answer, Moment, OutputFormat, StreamOptions, StreamState, answer};
+use crate::command::forecast::{Answer, OutputFormat, StreamOptions, StreamState, answer};
 use crate::output::{table_metres, table_share};
 use crate::plans::{NamedPlan, read_plans, tell_doubts_of_ego};
 use anyhow::Context as _;
 use clap::Args;
+use ddl::Moment;
 use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
 use ddl::scene::{Clearance, Futures, Plan};
 use serde::Serialize;

@@ -2,6 +2,7 @@
 
 use crate::command::{Machine, ModelChoice};
 use crate::output;
+use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -46,7 +47,7 @@ impl View {
         }
         self.machine.prepare_for_little()?;
         let model = self.model.load(self.machine.device)?;
-        let observed = self.tracks.observed(model.config())?;
+        let (observed, _) = self.tracks.observed(model.config())?;
         let recording = &observed.recording;
         let player = RecordingPlayer {
             model: &model,
@@ -70,7 +71,9 @@ impl View {
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
         });
         output::write_output(Some(&path), &page)?;
-        observed.warn_of_misfits();
+        if let Some(warning) = observed.misfits() {
+            tell(format_args!("{warning}"));
+        }
         if output::file_of(Some(&path)).is_none() {
             return Ok(());
         }

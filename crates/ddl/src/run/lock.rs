@@ -11,7 +11,7 @@ const FILE: &str = ".lock";
 /// The right to write into the directory of a run, or to a file. It is released when dropped; the system holds it for
 /// the process. `None` inside stands for a read-only directory, or for a file system without locks.
 #[derive(Debug)]
-pub struct RunLock(#[expect(dead_code, reason = "held, never read")] Option<File>);
+pub struct RunLock(#[allow(dead_code, reason = "held, never read")] Option<File>);
 
 impl RunLock {
     /// Locks the directory without waiting.

@@ -1,12 +1,12 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
-use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts};
+use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts};
 use crate::command::forecast::stream::{Answer, OutputFormat, StreamOptions, answer};
-use crate::command::forecast::{json_lines, table};
+use crate::command::forecast::table;
 use crate::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use anyhow::bail;
 use clap::Args;
-use ddl::{Ddl, Forecaster as _};
+use ddl::{Ddl, Forecaster as _, Moment, joint_lines, json_lines};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 
@@ -119,8 +119,8 @@ impl Answer for ForecastCommand {
         let headed = state.is_first_text();
         match self.stream.format(self.format) {
             OutputFormat::Csv => table::csv(moments, headed, &self.region, self.joint),
-            OutputFormat::Jsonl if self.joint => json_lines::joint_lines(moments, &self.region),
-            OutputFormat::Jsonl => json_lines::json_lines(moments, &self.region),
+            OutputFormat::Jsonl if self.joint => Ok(joint_lines(moments, &self.region)?),
+            OutputFormat::Jsonl => Ok(json_lines(moments, &self.region)?),
         }
     }
 }

@@ -1,9 +1,8 @@
 //! The forecasts of some frames, and the state that one group of frames passes on to the next.
 
 use crate::telling::tell;
-use ddl::data::{Clock, FrameNumber, HORIZON, OBSERVED, SceneName, Window};
-use ddl::dynamics::LyapunovCertificate;
-use ddl::{AdaptiveRegions, CertifiedForecast};
+use ddl::data::{Clock, FrameNumber, SceneName, Window};
+use ddl::{AdaptiveRegions, CertifiedForecast, Moment};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -129,45 +128,6 @@ impl StreamState {
 
     pub(crate) fn forget(&mut self, scene: &SceneName) {
         self.regions.remove(&Some(scene.clone()));
-    }
-}
-
-/// The forecast at one frame.
-pub(crate) struct Moment<'a> {
-    pub(crate) scene: Option<&'a SceneName>,
-    pub(crate) window: &'a Window,
-    pub(crate) forecast: &'a ddl::Forecast,
-    pub(crate) certified: Option<&'a CertifiedForecast>,
-    pub(crate) clock: Clock,
-}
-
-impl<'a> Moment<'a> {
-    pub(crate) fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
-        Some(self.certified?.certificate(i, hypothesis))
-    }
-
-    /// The name of a pedestrian in messages.
-    pub(crate) fn who(&self, i: usize) -> String {
-        let name = self.window.name(i);
-        match self.scene {
-            None => name.to_string(),
-            Some(scene) => format!("{name} of scene {scene}"),
-        }
-    }
-
-    pub(crate) fn observed_until(&self) -> FrameNumber {
-        self.clock.number(self.window.frames()[OBSERVED - 1])
-    }
-
-    /// The moment in microseconds.
-    pub(crate) fn microseconds(&self) -> i64 {
-        self.clock.microseconds(self.window.frames()[OBSERVED - 1])
-    }
-
-    pub(crate) fn frames(&self) -> Vec<FrameNumber> {
-        let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
-        let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
-        frames.collect()
     }
 }
 

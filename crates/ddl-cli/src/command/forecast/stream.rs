@@ -1,16 +1,16 @@
 //! The commands that answer every moment of a file of tracks or of live tracks.
 
 use crate::command::forecast::live;
-use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts, warn_of_violation};
+use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::{Machine, ModelChoice};
 use crate::interrupt::Interrupt;
 use crate::output::{file_of, write_file, write_parts};
 use crate::telling::tell;
-use crate::tracks::TrackOptions;
+use crate::tracks::{TrackOptions, tell_what_was_estimated};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
-use ddl::{Ddl, DdlError};
+use ddl::{Ddl, DdlError, Moment};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 use std::io::IsTerminal as _;
@@ -139,7 +139,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
         return live::run(command);
     }
     let model = stream.load()?;
-    let observed = stream.tracks.observed(model.config())?;
+    let (observed, topic) = stream.tracks.observed(model.config())?;
     let mut state = StreamState::default();
     let (mut lines, mut bytes) = (0, 0);
     let interrupt = Interrupt::catch()?;
@@ -152,7 +152,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     });
     if let Some(path) = log {
         write_file(path, |file| {
-            let mut log = ForecastLog::new(file, observed.topic.as_ref())?;
+            let mut log = ForecastLog::new(file, topic.as_ref())?;
             for windows in parts {
                 let clock = observed.clock;
                 let add = |moments: &[Moment<'_>], _: &mut StreamState| command.log(moments, &mut log);
@@ -171,7 +171,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     }
     state.unfamiliar.warn("");
     stream.warn_of_flood(lines, bytes);
-    observed.tell_what_was_estimated();
+    tell_what_was_estimated(&observed);
     Ok(())
 }
 

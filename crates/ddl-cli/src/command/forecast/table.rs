@@ -1,8 +1,8 @@
 //! Forecasts as csv: one row for each position.
 
-use crate::command::forecast::moment::Moment;
 use crate::output::{table_metres, table_share};
 use anyhow::Context as _;
+use ddl::Moment;
 use ddl::data::{FrameNumber, PedestrianName};
 use serde::Serialize;
 

@@ -2,8 +2,8 @@
 
 use crate::command::forecast::frames::StatedTime;
 use crate::telling::tell;
-use crate::tracks::NOISY;
 use crate::units::Units;
+use ddl::NOISY;
 use ddl::data::LiveTracks;
 
 /// Number of frames that show whether pedestrians have common ones.

@@ -109,8 +109,9 @@ function makePlayer(moments) {
     const who = pedestrian();
     const ahead = frame >= OBSERVED - 1 && time > OBSERVED - 1 ? who.hypotheses[chosenHypothesis()].path : who.truth;
     const [x, y] = placeAt(who.observed, ahead, time);
-    const speed = Math.hypot(...velocityAt(who.observed, ahead, time));
     const what = time > OBSERVED - 1 ? "forecast" : "observed";
+    // At the opening moment the speed is that of the last observed step.
+    const speed = Math.hypot(...velocityAt(who.observed, what === "forecast" ? ahead : [], time));
     byId("now-words").textContent = `${what} at (${x.toFixed(2)}, ${y.toFixed(2)}) m, ${speed.toFixed(2)} m/s`;
     canvas.dataset.time = time.toFixed(3);
     chart.moveTo(time);

@@ -213,7 +213,7 @@ function drawChosen(context, view, pedestrian, state, palette) {
   if (time <= now || (show.truth && time <= known)) {
     const place = placeAt(pedestrian.observed, pedestrian.truth, time);
     const colour = time <= now ? palette.ink : palette.truth;
-    arrow(context, view, place, velocityAt(pedestrian.observed, pedestrian.truth, time), colour, 2);
+    arrow(context, view, place, velocityAt(pedestrian.observed, time <= now ? [] : pedestrian.truth, time), colour, 2);
     dot(context, view.px(place), 5.5, colour, 1, palette.panel);
   }
 }

@@ -1,9 +1,10 @@
 //! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads; of
 //! joint futures one object for each moment.
 
-use crate::command::forecast::moment::Moment;
-use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName};
-use ddl::dynamics::{LyapunovCertificate, Violation};
+use crate::tracks::moment::Moment;
+use ddl_core::{Disc, Forecast};
+use ddl_data::{FrameNumber, HORIZON, PedestrianName, SceneName};
+use ddl_dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
 /// What is known of a moment.
@@ -87,10 +88,10 @@ struct Region {
 }
 
 impl Region {
-    fn of(forecast: &ddl::Forecast, i: usize, probability: f64) -> Option<Self> {
+    fn of(forecast: &Forecast, i: usize, probability: f64) -> Option<Self> {
         let discs = |t: usize| {
             let region = forecast.region(i, t, probability)?;
-            let disc = |disc: &ddl::Disc| [disc.centre[0], disc.centre[1], disc.radius];
+            let disc = |disc: &Disc| [disc.centre[0], disc.centre[1], disc.radius];
             Some(region.iter().map(disc).collect())
         };
         let discs = (0..HORIZON).map(discs).collect::<Option<_>>()?;
@@ -157,7 +158,11 @@ impl<'a> MomentHead<'a> {
     }
 }
 
-pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Result<String> {
+/// One object for each pedestrian and moment, with regions of these probabilities; fields as in `docs/program.md`.
+///
+/// # Errors
+/// A number that JSON does not have.
+pub fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, serde_json::Error> {
     let mut text = String::new();
     for moment in moments {
         for i in 0..moment.window.len() {
@@ -178,8 +183,11 @@ pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Res
     Ok(text)
 }
 
-/// One object for each moment.
-pub(super) fn joint_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Result<String> {
+/// One object for each moment, of joint futures.
+///
+/// # Errors
+/// As [`json_lines`].
+pub fn joint_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, serde_json::Error> {
     let mut text = String::new();
     for moment in moments {
         let pedestrians = 0..moment.window.len();
@@ -187,7 +195,7 @@ pub(super) fn joint_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Re
             weight: moment.forecast.weight(0, k),
             paths: pedestrians.clone().map(|i| Path::of(moment, i, k)).collect(),
         });
-        let groups = ddl::scene::groups(moment.window).into_iter();
+        let groups = ddl_scene::groups(moment.window).into_iter();
         let line = SceneLine {
             moment: MomentHead::of(moment),
             frames: moment.frames(),

@@ -1,0 +1,71 @@
+#![doc = include_str!("../README.md")]
+
+mod exchange;
+mod live;
+mod options;
+mod tracks;
+mod view;
+
+use exchange::{Failure, answer, thrown};
+use options::Options;
+use std::cell::OnceCell;
+use std::sync::Arc;
+use tracks::Tracks;
+use wasm_bindgen::prelude::*;
+
+/// Types that wasm-bindgen cannot derive.
+#[wasm_bindgen(typescript_custom_section)]
+const TYPES: &str = include_str!("types.d.ts");
+
+/// Forecasts of every moment of a file.
+///
+/// `name` is the name of the file, `bytes` its content; the format is recognised.
+///
+/// # Errors
+/// The error of the program, as text.
+#[wasm_bindgen(unchecked_return_type = "Answer")]
+pub fn forecast(
+    name: &str,
+    bytes: &[u8],
+    #[wasm_bindgen(unchecked_optional_param_type = "Options")] options: &JsValue,
+) -> Result<JsValue, JsError> {
+    asked(options, |options| {
+        let tracks = Tracks::read(name, bytes, &options)?;
+        let windows = tracks.windows(tracks.observed.windows.clone(), &options)?;
+        let forecasts = tracks::forecasts(&windows, &options)?;
+        let lines = tracks::lines(&windows, &forecasts, tracks.observed.clock, &options)?;
+        answer(&tracks.told, &lines)
+    })
+}
+
+/// What the page shows: the page of `ddl view`, a picture of the place, the forecasts as JSON lines.
+///
+/// # Errors
+/// As [`forecast`].
+#[wasm_bindgen(unchecked_return_type = "View")]
+pub fn view(
+    name: &str,
+    bytes: &[u8],
+    #[wasm_bindgen(unchecked_optional_param_type = "Options")] options: &JsValue,
+) -> Result<JsValue, JsError> {
+    asked(options, |options| view::view(name, bytes, &options))
+}
+
+/// An answer by these options.
+fn asked(options: &JsValue, answer: impl FnOnce(Options) -> Result<JsValue, Failure>) -> Result<JsValue, JsError> {
+    exchange::read(options)
+        .and_then(answer)
+        .map_err(|failure| thrown(&*failure))
+}
+
+/// The built-in model, loaded once.
+fn model() -> Result<Arc<ddl::Ddl>, Failure> {
+    thread_local!(static MODEL: OnceCell<Arc<ddl::Ddl>> = const { OnceCell::new() });
+    MODEL.with(|loaded| {
+        if let Some(model) = loaded.get() {
+            return Ok(Arc::clone(model));
+        }
+        let model = ddl::Ddl::builtin(ddl::BuiltinModel::World, ddl::DeviceChoice::Cpu)?;
+        Ok(Arc::clone(loaded.get_or_init(|| Arc::new(model))))
+    })
+}

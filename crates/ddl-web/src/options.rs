@@ -1,0 +1,96 @@
+//! Options by the names of the program's, and their ranges.
+
+use crate::exchange::Failure;
+use ddl::TrackUnits;
+use ddl::data::{ColumnChoice, Completeness, Homography, LiveTracks};
+use serde::Deserialize;
+
+/// `Options` of `types.d.ts`.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, rename_all = "camelCase", deny_unknown_fields)]
+#[expect(clippy::struct_excessive_bools, reason = "switches of the user")]
+pub(crate) struct Options {
+    fps: Option<f64>,
+    dt: Option<f64>,
+    frame_step: Option<i64>,
+    homography: Option<String>,
+    columns: Option<String>,
+    keep: Option<String>,
+    unit: Option<String>,
+    whole: bool,
+    max_age: Option<f64>,
+    every: Option<f64>,
+    pub(crate) last: bool,
+    pub(crate) joint: bool,
+    region: Vec<f64>,
+    pub(crate) memory: bool,
+    pub(crate) moments: Option<usize>,
+}
+
+impl Options {
+    pub(crate) fn units(&self) -> Result<TrackUnits, Failure> {
+        let given = [self.fps.is_some(), self.dt.is_some(), self.frame_step.is_some()];
+        if given.iter().filter(|is_given| **is_given).count() > 1 {
+            return Err("give one of fps, dt and frameStep".into());
+        }
+        let homography = self.homography.as_deref().map(str::parse::<Homography>).transpose();
+        Ok(TrackUnits {
+            fps: self.fps,
+            dt: self.dt,
+            frame_step: self.frame_step,
+            homography: homography.map_err(|error| format!("homography: {error}"))?,
+        })
+    }
+
+    pub(crate) fn choice(&self) -> Result<ColumnChoice, Failure> {
+        let mut choice = ColumnChoice::default();
+        if let Some(columns) = &self.columns {
+            choice = choice
+                .with_columns(columns)
+                .map_err(|problem| format!("columns {problem}"))?;
+        }
+        if let Some(keep) = &self.keep {
+            choice = choice.keeping(keep).map_err(|problem| format!("keep {problem}"))?;
+        }
+        if let Some(unit) = &self.unit {
+            choice = choice.in_unit(unit).map_err(|problem| format!("unit {problem}"))?;
+        }
+        Ok(if self.homography.is_some() {
+            choice.mapped()
+        } else {
+            choice
+        })
+    }
+
+    /// These tracks with the windows that are asked for.
+    pub(crate) fn windows_of(&self, tracks: LiveTracks) -> Result<LiveTracks, Failure> {
+        for (name, seconds) in [("maxAge", self.max_age), ("every", self.every)] {
+            if seconds.is_some_and(|seconds| !(0.0..=LiveTracks::LONGEST_GAP).contains(&seconds)) {
+                let longest = LiveTracks::LONGEST_GAP;
+                return Err(format!("{name} must be a number of seconds from 0 to {longest}").into());
+            }
+        }
+        let completeness = if self.whole {
+            Completeness::Whole
+        } else {
+            Completeness::Partial
+        };
+        let every = self.every.or(self.last.then_some(0.0));
+        let tracks = tracks.with_completeness(completeness);
+        Ok(tracks.with_max_age(self.max_age).with_interval(every))
+    }
+
+    /// Whether every moment is to be forecast, as the file has them.
+    pub(crate) fn are_all(&self) -> bool {
+        self.every.is_none() && !self.last
+    }
+
+    /// Probabilities of regions.
+    pub(crate) fn regions(&self) -> Result<&[f64], Failure> {
+        let [low, high] = ddl::region_table().range();
+        if self.region.iter().all(|level| (low..=high).contains(level)) {
+            return Ok(&self.region);
+        }
+        Err(format!("the probability of a region must be from {low} to {high}").into())
+    }
+}

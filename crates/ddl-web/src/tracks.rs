@@ -1,0 +1,115 @@
+//! Tracks of a file, what the program tells of them, and their forecasts.
+
+use crate::exchange::Failure;
+use crate::model;
+use crate::options::Options;
+use ddl::data::{Clock, Format, Window, parse_columns};
+use ddl::memory::{Playback, SceneMemory};
+use ddl::{AdaptiveRegions, Forecast, Forecaster as _, Moment, OWN_CLOCKS, ObservedTracks, TimedRecording, TrackUnits};
+use std::path::Path;
+
+pub(crate) struct Tracks {
+    pub(crate) observed: ObservedTracks,
+    /// Notes and warnings, a line each, as the program prints them.
+    pub(crate) told: Vec<String>,
+}
+
+impl Tracks {
+    pub(crate) fn read(name: &str, bytes: &[u8], options: &Options) -> Result<Self, Failure> {
+        let (choice, units) = (options.choice()?, options.units()?);
+        let format = Format::guess_with(Path::new(name), bytes, &choice)?;
+        let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+        let mut rows = parse_columns(bytes, name, format, &choice)?.with_name(&*stem);
+        if let Some(homography) = units.homography {
+            rows = homography
+                .to_ground(&rows)
+                .map_err(|error| format!("{name}: {error}"))?;
+        }
+        let timed = TimedRecording::new(&rows, &units, &TrackUnits::default());
+        let timed = timed.map_err(|error| format!("{name}: {error}"))?;
+        let notes = timed.notes.iter().chain(&timed.guessed);
+        let mut told: Vec<String> = notes.map(|note| format!("note: {note}")).collect();
+        let tracks = options.windows_of(timed.recording.live_tracks())?;
+        let observed = ObservedTracks::new((timed.recording, timed.clock), tracks, options.last);
+        if !observed.has_common_frames && options.are_all() {
+            told.push(format!("note: {OWN_CLOCKS} (--every)"));
+        }
+        let warning = observed.warning.as_ref();
+        told.extend(warning.map(|warning| format!("warning: {}", ddl::words_of_warning(warning))));
+        if let Some(problem) = observed.problem() {
+            told.push(format!("{name}: {problem}"));
+            return Err(told.join("\n").into());
+        }
+        told.extend(observed.estimated());
+        Ok(Self { observed, told })
+    }
+
+    /// Some of its windows, with the tracks of earlier pedestrians if they are asked for.
+    pub(crate) fn windows(&self, windows: Vec<Window>, options: &Options) -> Result<Vec<Window>, Failure> {
+        if !options.memory {
+            return Ok(windows);
+        }
+        let count = model()?.goal_model().recalled_per_pedestrian()?;
+        Ok(self
+            .empty_memory()?
+            .replay(&self.observed.recording, Playback::Forward, windows, count)?)
+    }
+
+    /// A picture of where its pedestrians walk, appear and disappear, as SVG.
+    pub(crate) fn place(&self) -> Result<String, Failure> {
+        let mut memory = self.empty_memory()?;
+        memory.observe_recording(&self.observed.recording)?;
+        let tracks: Vec<_> = memory.tracks().collect();
+        let numbers = format!("{} segments of {} tracks", memory.segments(), tracks.len());
+        Ok(ddl::report::figure::place(
+            self.observed.recording.name(),
+            &numbers,
+            &tracks,
+        ))
+    }
+
+    fn empty_memory(&self) -> Result<SceneMemory, Failure> {
+        let step = self.observed.recording.frame_step();
+        Ok(SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY)?)
+    }
+}
+
+/// The forecasts of windows in order of time; with regions they adapt from one to the next.
+pub(crate) fn forecasts(windows: &[Window], options: &Options) -> Result<Vec<Forecast>, Failure> {
+    let model = model()?;
+    if options.joint {
+        return Ok(model.forecast_scenes(windows, None)?);
+    }
+    let forecasts = model.forecast_all(windows)?;
+    if options.regions()?.is_empty() {
+        return Ok(forecasts);
+    }
+    let mut adaptive = AdaptiveRegions::default();
+    let pairs = windows.iter().zip(forecasts);
+    Ok(pairs
+        .map(|(window, forecast)| adaptive.adapt(window, forecast))
+        .collect())
+}
+
+/// Forecasts as the program's JSON lines.
+pub(crate) fn lines(
+    windows: &[Window],
+    forecasts: &[Forecast],
+    clock: Clock,
+    options: &Options,
+) -> Result<String, Failure> {
+    let moments = windows.iter().zip(forecasts).map(|(window, forecast)| Moment {
+        scene: None,
+        window,
+        forecast,
+        certified: None,
+        clock,
+    });
+    let moments: Vec<Moment<'_>> = moments.collect();
+    let of_moments = if options.joint {
+        ddl::joint_lines
+    } else {
+        ddl::json_lines
+    };
+    Ok(of_moments(&moments, options.regions()?)?)
+}

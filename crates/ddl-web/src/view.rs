@@ -1,0 +1,49 @@
+//! What the page shows of a file.
+
+use crate::exchange::{Failure, parse};
+use crate::model;
+use crate::options::Options;
+use crate::tracks::{self, Tracks};
+use ddl::RecordingPlayer;
+use ddl::data::Summary;
+use serde::Serialize;
+use wasm_bindgen::JsValue;
+
+/// Largest number of moments to play, as of `ddl view`.
+const MOMENTS: usize = 60;
+
+/// `View` of `types.d.ts`.
+#[derive(Serialize)]
+struct View {
+    data: Summary,
+    page: String,
+    place: String,
+    notes: Vec<String>,
+    lines: String,
+}
+
+/// The page of `ddl view` with its forecasts as JSON lines, a picture of the place, and what the program tells.
+pub(crate) fn view(name: &str, bytes: &[u8], options: &Options) -> Result<JsValue, Failure> {
+    let tracks = Tracks::read(name, bytes, options)?;
+    let (observed, model) = (&tracks.observed, model()?);
+    let player = RecordingPlayer {
+        model: &model,
+        recording: &observed.recording,
+        windows: &observed.windows,
+        most: options.moments.unwrap_or(MOMENTS).max(1),
+        joint: options.joint,
+    };
+    let windows = tracks.windows(player.shown(), options)?;
+    let forecasts = tracks::forecasts(&windows, options)?;
+    let warning = observed.warning.as_ref().map(ToString::to_string);
+    let frame = |frame| observed.clock.number(frame).nearest();
+    let every: Vec<_> = forecasts.iter().collect();
+    let view = View {
+        data: observed.recording.summary(),
+        page: player.to_html(&every, name, warning.as_deref(), frame)?,
+        place: tracks.place()?,
+        lines: tracks::lines(&windows, &forecasts, observed.clock, options)?,
+        notes: tracks.told,
+    };
+    parse(&serde_json::to_string(&view)?)
+}

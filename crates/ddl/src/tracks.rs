@@ -1,0 +1,6 @@
+//! Tracks of a file and answers about them: what every program that reads files says and writes.
+
+pub(crate) mod json_lines;
+pub(crate) mod moment;
+pub(crate) mod observed;
+pub(crate) mod timed;

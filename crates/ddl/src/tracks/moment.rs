@@ -1,0 +1,54 @@
+//! A window with its forecast, as the file counts time.
+
+use crate::forecast::certified::CertifiedForecast;
+use ddl_core::Forecast;
+use ddl_data::{Clock, FrameNumber, HORIZON, OBSERVED, SceneName, Window};
+use ddl_dynamics::LyapunovCertificate;
+
+/// The forecast at one frame.
+#[derive(Debug, Clone, Copy)]
+pub struct Moment<'a> {
+    /// The scene, if the tracks name scenes.
+    pub scene: Option<&'a SceneName>,
+    /// The observed pedestrians.
+    pub window: &'a Window,
+    /// Their forecast.
+    pub forecast: &'a Forecast,
+    /// The same forecast with its certificates, if they were asked for.
+    pub certified: Option<&'a CertifiedForecast>,
+    /// The clock of the window.
+    pub clock: Clock,
+}
+
+impl<'a> Moment<'a> {
+    /// The certificate of a pedestrian's hypothesis, if they were asked for.
+    pub fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
+        Some(self.certified?.certificate(i, hypothesis))
+    }
+
+    /// The name of a pedestrian in messages.
+    pub fn who(&self, i: usize) -> String {
+        let name = self.window.name(i);
+        match self.scene {
+            None => name.to_string(),
+            Some(scene) => format!("{name} of scene {scene}"),
+        }
+    }
+
+    /// The last observed frame.
+    pub fn observed_until(&self) -> FrameNumber {
+        self.clock.number(self.window.frames()[OBSERVED - 1])
+    }
+
+    /// The moment in microseconds.
+    pub fn microseconds(&self) -> i64 {
+        self.clock.microseconds(self.window.frames()[OBSERVED - 1])
+    }
+
+    /// The 12 frames of the forecast.
+    pub fn frames(&self) -> Vec<FrameNumber> {
+        let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
+        let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
+        frames.collect()
+    }
+}

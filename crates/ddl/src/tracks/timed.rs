@@ -1,0 +1,104 @@
+//! Rows of a file on the clock of their frames, with what was assumed about it.
+
+use crate::error::DdlError;
+use crate::run::track_units::TrackUnits;
+use ddl_data::{Clock, ClockError, Recording, TIME_STEP};
+
+/// Rates with a smaller relative difference count as equal.
+const SAME: f64 = 0.005;
+
+/// A recording in ticks of its clock.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct TimedRecording {
+    /// The recording.
+    pub recording: Recording,
+    /// The clock of its frames or times.
+    pub clock: Clock,
+    /// A sentence on its frame step, if nobody gives the rate.
+    pub guessed: Option<String>,
+    /// Sentences on what the reader assumed or left out, and on its rate.
+    pub notes: Vec<String>,
+}
+
+impl TimedRecording {
+    /// Rows as they were read, with the rate that is given, else that of the file, else the remembered one.
+    ///
+    /// # Errors
+    /// [`DdlError::Rate`] if a rate is given for rows with times, [`DdlError::Clock`] for a rate out of range.
+    pub fn new(rows: &Recording, given: &TrackUnits, remembered: &TrackUnits) -> Result<Self, DdlError> {
+        let stated = rows.stated_clock().transpose()?;
+        if let (Some(option), Some(_)) = (given.rate_option(), rows.time_unit()) {
+            return Err(DdlError::Rate { option });
+        }
+        let notes = rows
+            .notes()
+            .iter()
+            .cloned()
+            .chain(note_of_rate(rows, given, remembered));
+        let clock = match given.clock()?.or(stated) {
+            Some(clock) => Some(clock),
+            None => remembered.clock()?,
+        };
+        let guessed = clock.is_none().then(|| {
+            let step = many_frames(rows.frame_step());
+            format!("a step of 0.4 s is taken as {step}; give --fps, --dt or --frame-step if this is wrong")
+        });
+        let clock = clock.map_or_else(|| Clock::with_frame_step(rows.frame_step()), Ok)?;
+        Ok(Self {
+            notes: notes.collect(),
+            recording: rows.on_clock(clock)?,
+            clock,
+            guessed,
+        })
+    }
+}
+
+impl TrackUnits {
+    /// The clock of these units, if they have a rate.
+    ///
+    /// # Errors
+    /// A rate that is out of range.
+    pub fn clock(&self) -> Result<Option<Clock>, ClockError> {
+        match (self.frame_time(), self.frame_step) {
+            (Some(frame_time), _) => Clock::with_frame_time(frame_time).map(Some),
+            (None, Some(step)) => Clock::with_frame_step(step).map(Some),
+            (None, None) => Ok(None),
+        }
+    }
+
+    /// The rate as an option of the program, such as `--fps 25`.
+    pub fn rate_option(&self) -> Option<String> {
+        let fps = self.fps.map(|fps| format!("--fps {fps}"));
+        let dt = self.dt.map(|dt| format!("--dt {dt}"));
+        let step = self.frame_step.map(|step| format!("--frame-step {step}"));
+        dt.or(fps).or(step)
+    }
+
+    /// Seconds between consecutive frame numbers, if `fps` or `dt` is given.
+    fn frame_time(&self) -> Option<f64> {
+        self.dt.or(self.fps.map(|fps| 1.0 / fps))
+    }
+}
+
+/// A note if the rate in the file differs from the one given, remembered or guessed.
+fn note_of_rate(rows: &Recording, given: &TrackUnits, remembered: &TrackUnits) -> Option<String> {
+    let (rate, told) = (rows.rate()?, rows.stated_frame_time()?);
+    let apart = rows.frame_step();
+    let of_step = |step: i64| TIME_STEP / step as f64;
+    let option = given.rate_option();
+    let otherwise = if option.is_some() { given } else { remembered };
+    let otherwise = otherwise.frame_time().or(otherwise.frame_step.map(of_step));
+    let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
+    let scenes = format!("the file gives {rate} frames per second, and its frame numbers increase by {apart}");
+    let of_file = format!("--fps {}", (1e4 / told).round() / 1e4);
+    match option {
+        _ if same => None,
+        None => Some(format!("{scenes}: read as {of_file}")),
+        Some(option) => Some(format!("read as {option}, although {scenes} ({of_file})")),
+    }
+}
+
+pub(crate) fn many_frames(count: i64) -> String {
+    format!("{count} {}", if count == 1 { "frame" } else { "frames" })
+}

@@ -1,0 +1,62 @@
+//! The standard library of a target other than this machine: rustup's, or one that is built from Debian's sources.
+
+use std::env;
+use std::ffi::{OsStr, OsString};
+use std::path::Path;
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use crate::debian;
+use crate::process::{find_on_path, read, run};
+use crate::workspace::Workspace;
+
+/// Debian's compiler, its sources of the standard library, and the packages of both.
+const COMPILER: &str = "/usr/bin/rustc";
+const SOURCES: &str = "/usr/lib/rustlib/src/rust/library/Cargo.lock";
+const PACKAGES: [&str; 2] = ["rustc-web", "rust-web-src"];
+
+/// A target whose standard library is at hand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct RustTarget {
+    name: &'static str,
+    is_built: bool,
+}
+
+impl RustTarget {
+    /// Installs the standard library if it is missing.
+    pub(crate) fn ensure(workspace: &Workspace, name: &'static str) -> Result<Self> {
+        let rustup = || run(workspace.program("rustup").args(["--quiet", "target", "add", name]));
+        let is_built = find_on_path(OsStr::new("rustup")).is_none() || rustup().is_err();
+        if is_built {
+            eprintln!(
+                "the standard library of {name} is built from Debian's {}",
+                PACKAGES.join(" and ")
+            );
+            debian::ensure_program(SOURCES, &PACKAGES)
+                .with_context(|| format!("the target {name} needs `rustup target add {name}`"))?;
+        }
+        Ok(Self { name, is_built })
+    }
+
+    /// `cargo build --release` for the target.
+    pub(crate) fn build(self, workspace: &Workspace, arguments: &str) -> Result<Command> {
+        let mut cargo = workspace.cargo(["build", "--release", "--target", self.name]);
+        cargo.args(arguments.split(' '));
+        if self.is_built {
+            // Debian's compiler is a stable one, which builds a standard library only if it is told to.
+            cargo.arg("-Zbuild-std=std,panic_abort");
+            cargo.env("RUSTC", COMPILER).env("RUSTC_BOOTSTRAP", "1");
+            cargo.env("PATH", with_linker(workspace)?);
+        }
+        Ok(cargo)
+    }
+}
+
+/// The search path with the linker of the other compiler, which Debian's lacks.
+fn with_linker(workspace: &Workspace) -> Result<OsString> {
+    let libraries = read(workspace.program("rustc").args(["--print", "target-libdir"]))?;
+    let programs = Path::new(libraries.trim()).with_file_name("bin");
+    let path = env::var_os("PATH").unwrap_or_default();
+    Ok(env::join_paths([programs].into_iter().chain(env::split_paths(&path)))?)
+}
