@@ -7,6 +7,7 @@ mod data;
 mod docs;
 mod nightly;
 mod python;
+mod release;
 mod setup;
 mod test;
 mod web;
@@ -34,6 +35,8 @@ pub(crate) enum Command {
     Ci,
     /// Build the wheel of the Python package and test it in a virtual environment
     Python(python::Arguments),
+    /// Build everything that a version consists of; without --dry-run, publish it
+    Release(release::Arguments),
     /// Build and install the library for C and C++
     C(c::Arguments),
     /// Build the page and the npm package that forecast in a browser
@@ -54,6 +57,7 @@ impl Command {
             Self::Check => ci::check(workspace),
             Self::Ci => ci::run(workspace),
             Self::Python(arguments) => arguments.run(workspace),
+            Self::Release(arguments) => arguments.run(workspace),
             Self::C(arguments) => arguments.run(workspace),
             Self::Web(arguments) => arguments.run(workspace),
             Self::Docs => docs::print(workspace),

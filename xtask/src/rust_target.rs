@@ -43,13 +43,21 @@ impl RustTarget {
     pub(crate) fn build(self, workspace: &Workspace, arguments: &str) -> Result<Command> {
         let mut cargo = workspace.cargo(["build", "--release", "--target", self.name]);
         cargo.args(arguments.split(' '));
+        self.prepare(workspace, &mut cargo)?;
+        Ok(cargo)
+    }
+
+    /// Lets a command that calls cargo for the target find the standard library.
+    pub(crate) fn prepare(self, workspace: &Workspace, command: &mut Command) -> Result<()> {
         if self.is_built {
             // Debian's compiler is a stable one, which builds a standard library only if it is told to.
-            cargo.arg("-Zbuild-std=std,panic_abort");
-            cargo.env("RUSTC", COMPILER).env("RUSTC_BOOTSTRAP", "1");
-            cargo.env("PATH", with_linker(workspace)?);
+            command
+                .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
+                .env("RUSTC", COMPILER)
+                .env("RUSTC_BOOTSTRAP", "1")
+                .env("PATH", with_linker(workspace)?);
         }
-        Ok(cargo)
+        Ok(())
     }
 }
 

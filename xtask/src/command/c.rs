@@ -18,7 +18,7 @@ const LARGEST: u64 = 9_000_000;
 /// What the static library needs of the system.
 const NATIVE: &str = "-lgcc_s -lpthread -lm -ldl -lc";
 /// A panic must not end the program that calls.
-const PROFILE: &str = "wheel";
+pub(super) const PROFILE: &str = "wheel";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -43,7 +43,7 @@ fn build(workspace: &Workspace, options: &str) -> Result<()> {
 }
 
 /// The library that was built in this folder of `target`, under `prefix`.
-fn install(workspace: &Workspace, profile: &str, prefix: &Path) -> Result<()> {
+pub(super) fn install(workspace: &Workspace, profile: &str, prefix: &Path) -> Result<()> {
     let [lib, include] = ["lib", "include"].map(|folder| prefix.join(folder));
     for folder in [&include, &lib.join("pkgconfig"), &lib.join("cmake/ddl")] {
         fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))?;

@@ -15,6 +15,7 @@ use crate::workspace::Workspace;
 
 /// The folder of page and package.
 const MADE: &str = "target/web";
+pub(super) const PACKAGE: &str = "target/web/npm";
 /// What cargo makes, in a folder of its own, because the compiler may be another one.
 const BUILT: &str = "target/wasm";
 /// What the test of the example installs.
@@ -42,7 +43,7 @@ pub(super) fn build(workspace: &Workspace) -> Result<()> {
     let mut cargo = target.build(workspace, &format!("--quiet -p ddl-web --target-dir {BUILT}"))?;
     // The kernels compute with vectors of 128 bits, which every browser since 2023 has.
     run(cargo.env("RUSTFLAGS", "-C target-feature=+simd128"))?;
-    let package = workspace.path(MADE).join("npm");
+    let package = workspace.path(PACKAGE);
     let module = "wasm32-unknown-unknown/release/ddl_forecast.wasm";
     let bindgen = "run --quiet --package xtask --features bindgen --bin bindgen --target-dir target/xtask --";
     let mut bindgen = workspace.cargo(bindgen.split(' '));

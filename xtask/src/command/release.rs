@@ -1,0 +1,237 @@
+//! `cargo xtask release`: everything that a version consists of, built and checked; to publish it, a person has keys.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use anyhow::{Context, Result, bail, ensure};
+use clap::Args;
+
+use super::{c, set_up, web};
+use crate::cache::sha256;
+use crate::process::{read, run};
+use crate::rust_target::RustTarget;
+use crate::tools::{Tools, cargo_tool};
+use crate::workspace::Workspace;
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+/// The folder of the files of a release.
+const FILES: &str = "target/release-files";
+/// The oldest C library on which wheel and C library work: that of manylinux2014.
+const OLDEST_GLIBC: &str = "2.17";
+/// The packages whose parts are listed, each a file of the release.
+const LISTED: [&str; 4] = ["ddl-cli", "ddl-python", "ddl-c", "ddl-web"];
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Build and check everything, and publish nothing
+    #[arg(long)]
+    dry_run: bool,
+}
+
+type Step = (&'static str, fn(&Workspace, &Path) -> Result<()>);
+const STEPS: [Step; 7] = [
+    ("crates", crates),
+    ("wheels", wheels),
+    ("npm package", npm_package),
+    ("C library", c_library),
+    ("program", program),
+    ("lists of parts", lists_of_parts),
+    ("checksums", checksums),
+];
+
+impl Arguments {
+    pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
+        let notes = notes(&fs::read_to_string(workspace.path("CHANGELOG.md"))?, self.dry_run)?;
+        let status = read(workspace.program("git").args(["status", "--porcelain"]))?;
+        ensure!(
+            self.dry_run || status.is_empty(),
+            "a release is a commit, but files have changed:\n{status}"
+        );
+        let files = workspace.path(FILES);
+        if files.exists() {
+            fs::remove_dir_all(&files).with_context(|| format!("{} cannot be removed", files.display()))?;
+        }
+        fs::create_dir_all(&files)?;
+        fs::write(files.join("notes.md"), notes)?;
+        for (name, step) in STEPS {
+            let start = Instant::now();
+            step(workspace, &files).with_context(|| format!("release: {name}"))?;
+            eprintln!("release: {name}: {} s", start.elapsed().as_secs());
+        }
+        for file in of_extension(&files, "")? {
+            println!("{} {}", fs::metadata(&file)?.len(), file.display());
+        }
+        if self.dry_run {
+            return Ok(());
+        }
+        publish(workspace, &files)
+    }
+}
+
+/// What the changelog says of this version; without a date it is not one to publish.
+fn notes(changelog: &str, dry_run: bool) -> Result<String> {
+    let start = format!("## {VERSION} - ");
+    let section = changelog
+        .split("\n## ")
+        .find_map(|part| format!("## {part}").strip_prefix(&start).map(str::to_owned));
+    let section = section.with_context(|| format!("CHANGELOG.md has no section `{start}DATE`"))?;
+    if section.starts_with("unreleased") {
+        ensure!(
+            dry_run,
+            "CHANGELOG.md calls {VERSION} unreleased: write the date of the release"
+        );
+        eprintln!("note: CHANGELOG.md calls {VERSION} unreleased");
+    }
+    Ok(format!("# DDL {VERSION}, {section}"))
+}
+
+/// Every crate as its package, in the order of their dependencies; each is built from it.
+fn crates(workspace: &Workspace, _: &Path) -> Result<()> {
+    set_up(workspace)?;
+    let publish = "publish --workspace --dry-run --allow-dirty --target-dir target/publish";
+    run(&mut workspace.cargo(publish.split(' ')))
+}
+
+fn wheels(workspace: &Workspace, files: &Path) -> Result<()> {
+    let tools = Tools::for_release(workspace)?;
+    for target in ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"] {
+        let mut maturin = tools.program(workspace, "maturin");
+        let options = "build --quiet --zig --profile wheel --compatibility manylinux2014 --manifest-path \
+                       crates/ddl-python/Cargo.toml --target-dir target/portable --target";
+        maturin
+            .args(options.split_whitespace())
+            .arg(target)
+            .arg("--out")
+            .arg(files);
+        with_target(workspace, &mut maturin, target)?;
+        run(&mut maturin)?;
+    }
+    Ok(())
+}
+
+/// Lets a command that calls cargo find the target's standard library; this machine's own is there.
+fn with_target(workspace: &Workspace, command: &mut Command, target: &'static str) -> Result<()> {
+    if !target.starts_with("x86_64-unknown-linux-gnu") {
+        RustTarget::ensure(workspace, target)?.prepare(workspace, command)?;
+    }
+    Ok(())
+}
+
+fn npm_package(workspace: &Workspace, files: &Path) -> Result<()> {
+    web::build(workspace)?;
+    let mut npm = workspace.program("npm");
+    run(npm
+        .args(["pack", "--silent", "--pack-destination"])
+        .arg(files)
+        .arg(workspace.path(web::PACKAGE)))
+}
+
+/// cargo with zig as its linker, in the folder `target/portable`.
+fn zigbuild(workspace: &Workspace, target: &'static str, glibc: &str, options: &str) -> Result<()> {
+    let mut cargo = Tools::for_release(workspace)?.program(workspace, "cargo-zigbuild");
+    cargo.args(["zigbuild", "--quiet", "--target-dir", "target/portable", "--target"]);
+    cargo.arg(format!("{target}{glibc}")).args(options.split(' '));
+    with_target(workspace, &mut cargo, target)?;
+    run(&mut cargo)
+}
+
+fn c_library(workspace: &Workspace, files: &Path) -> Result<()> {
+    let target = "x86_64-unknown-linux-gnu";
+    let options = format!("--package ddl-c --profile {}", c::PROFILE);
+    zigbuild(workspace, target, &format!(".{OLDEST_GLIBC}"), &options)?;
+    let name = format!("ddl-c-{VERSION}-x86_64-linux");
+    let prefix = workspace.path("target/portable").join(&name);
+    c::install(workspace, &format!("portable/{target}/{}", c::PROFILE), &prefix)?;
+    pack(workspace, files, &name)
+}
+
+fn program(workspace: &Workspace, files: &Path) -> Result<()> {
+    let target = "x86_64-unknown-linux-musl";
+    zigbuild(workspace, target, "", "--release --package ddl-cli")?;
+    let name = format!("ddl-{VERSION}-x86_64-linux");
+    let folder = workspace.path("target/portable").join(&name);
+    fs::create_dir_all(&folder)?;
+    let built = workspace.path("target/portable").join(target).join("release/ddl");
+    fs::copy(&built, folder.join("ddl")).with_context(|| built.display().to_string())?;
+    run(workspace
+        .program(folder.join("ddl"))
+        .args(["forecast", "datasets/sample.csv", "--fps", "2.5", "--last"])
+        .stdout(std::process::Stdio::null()))?;
+    pack(workspace, files, &name)
+}
+
+/// An archive of the folder of that name, with the licences.
+fn pack(workspace: &Workspace, files: &Path, name: &str) -> Result<()> {
+    let folder = workspace.path("target/portable").join(name);
+    for licence in ["LICENSE-MIT", "LICENSE-APACHE"] {
+        fs::copy(workspace.path(licence), folder.join(licence)).context(licence)?;
+    }
+    let mut tar = workspace.program("tar");
+    tar.args(["--sort=name", "--owner=0", "--group=0", "-czf"])
+        .arg(files.join(format!("{name}.tar.gz")));
+    run(tar.arg("-C").arg(workspace.path("target/portable")).arg(name))
+}
+
+/// What each of the files is built from, as `CycloneDX`.
+fn lists_of_parts(workspace: &Workspace, files: &Path) -> Result<()> {
+    let cyclonedx = cargo_tool(workspace, "cargo-cyclonedx", "0.5.9")?;
+    for package in LISTED {
+        let manifest = format!("crates/{package}/Cargo.toml");
+        let mut list = workspace.program(&cyclonedx);
+        run(list.args(["cyclonedx", "--format", "json", "--manifest-path", &manifest]))?;
+        let made = workspace.path(&format!("crates/{package}/{package}.cdx.json"));
+        fs::rename(&made, files.join(format!("{package}-{VERSION}.cdx.json")))
+            .with_context(|| made.display().to_string())?;
+    }
+    Ok(())
+}
+
+fn checksums(_: &Workspace, files: &Path) -> Result<()> {
+    let sums = of_extension(files, "")?.into_iter().map(|file| {
+        let name = file.file_name().unwrap_or_default().display().to_string();
+        Ok(format!("{}  {name}\n", sha256(&file)?))
+    });
+    let sums = sums.collect::<Result<String>>()?;
+    fs::write(files.join("SHA256SUMS"), sums).context("SHA256SUMS")
+}
+
+/// The files of a folder with this extension, or all, by name.
+fn of_extension(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+    let mut files: Vec<PathBuf> = fs::read_dir(folder)?.flatten().map(|entry| entry.path()).collect();
+    files.retain(|file| extension.is_empty() || file.extension().is_some_and(|it| it == extension));
+    files.sort();
+    Ok(files)
+}
+
+/// Each program finds the key of its registry in the variable or file that it documents.
+fn publish(workspace: &Workspace, files: &Path) -> Result<()> {
+    run(workspace
+        .program("git")
+        .args(["tag", "--annotate", &format!("v{VERSION}"), "--message", "Release"]))?;
+    run(&mut workspace.cargo(["publish", "--workspace"]))?;
+    let mut maturin = Tools::for_release(workspace)?.program(workspace, "maturin");
+    run(maturin
+        .args(["upload", "--skip-existing"])
+        .args(of_extension(files, "whl")?))?;
+    let packages = of_extension(files, "tgz")?;
+    let [package] = &packages[..] else {
+        bail!("{} npm packages in {}", packages.len(), files.display());
+    };
+    run(workspace.program("npm").arg("publish").arg(package))?;
+    println!(
+        "push the tag v{VERSION}, and attach the files of {} to it",
+        files.display()
+    );
+    Ok(())
+}
+
+#[test]
+fn the_notes_are_the_section_of_this_version() {
+    let changelog = format!("# Changelog\n\n## {VERSION} - unreleased\n\n- new\n\n## 0.1.0 - 2026-01-01\n\n- old\n");
+    let notes_of = |dry_run| notes(&changelog, dry_run);
+    assert!(notes_of(true).unwrap().ends_with("unreleased\n\n- new\n"));
+    assert!(notes_of(false).unwrap_err().to_string().contains("write the date"));
+    assert!(notes("# Changelog\n", true).unwrap_err().to_string().contains(VERSION));
+}
