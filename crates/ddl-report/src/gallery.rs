@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ddl_core::{Forecast, distance};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
-use ddl_eval::category::{Interaction, MotionKind};
+use ddl_eval::category::MotionKind;
+use ddl_eval::category::interaction::{avoids_collision, is_group};
 use ddl_eval::metric::collision::closest_approach;
 use ddl_eval::metric::displacement::DisplacementErrors;
 use ddl_eval::{EvaluationError, ScoredWindow};
@@ -111,10 +112,10 @@ fn shows(scene: &ScoredWindow<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)>
         }
         _ => {}
     }
-    if let Some((other, _)) = nearest(window, i, Interaction::Group, mean_distance) {
+    if let Some((other, _)) = nearest(window, i, is_group, mean_distance) {
         shows.push((HighlightKind::Group, vec![i, other]));
     }
-    let passed = nearest(window, i, Interaction::CollisionAvoidance, closest_approach);
+    let passed = nearest(window, i, avoids_collision, closest_approach);
     if let Some((other, apart)) = passed
         && apart >= APART
     {
@@ -138,11 +139,11 @@ fn converges(scene: &ScoredWindow<'_>, i: usize) -> bool {
 fn nearest(
     window: &Window,
     i: usize,
-    kind: Interaction,
+    interacts: fn(&[Position], &[Position]) -> bool,
     apart: fn(&[Position], &[Position]) -> f64,
 ) -> Option<(usize, f64)> {
     (0..window.len())
-        .filter(|&j| Interaction::between(window, i, j).contains(&kind))
+        .filter(|&j| j != i && interacts(window.track(i), window.track(j)))
         .map(|j| (j, apart(window.future(i), window.future(j))))
         .min_by(|a, b| a.1.total_cmp(&b.1))
 }

@@ -15,8 +15,8 @@ pub enum Coverage {
     /// Fail: the file must forecast exactly the pedestrians of the windows.
     #[default]
     Whole,
-    /// Score the pedestrians that are in both. The others still count for collisions with true futures, interactions
-    /// and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
+    /// Score the pedestrians that are in both. The others still count for collisions with true futures and baselines,
+    /// but not for the collision rate, JADE and JFDE, which compare forecasts.
     Intersection,
 }
 
