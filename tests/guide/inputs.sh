@@ -3,6 +3,11 @@
 cp "$1" tracks.csv
 awk -F, 'NR > 1 { printf "{\"track\": {\"f\": %d, \"p\": %d, \"x\": %s, \"y\": %s}}\n", $1, $2, $3 + 0, $4 + 0 }' \
     tracks.csv > tracks.ndjson
+awk 'BEGIN {
+    print "{\"scene\": {\"id\": 0, \"p\": 3, \"s\": 0, \"e\": 190}}"
+    row = "{\"track\": {\"f\": %d, \"p\": 3, \"x\": %s, \"y\": 12, \"prediction_number\": 0, \"scene_id\": 0}}\n"
+    for (t = 1; t <= 12; t++) printf row, 70 + 10 * t, 7.7 - 0.5 * t
+}' > forecasts.ndjson
 awk -F, -v OFS=, 'NR > 1 { $3 = ($3 + 5) / 0.02; $4 = (12 - $4) / 0.02 } { print }' tracks.csv > pixels.csv
 printf '0.02 0 -5\n0 -0.02 12\n0 0 1\n' > H.txt
 # Every fifth frame sees every other pedestrian.

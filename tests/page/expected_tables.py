@@ -1,32 +1,17 @@
 """The tables of a report page, computed again from report.json."""
 
-import json
 import math
 
 # Headings of the first column of tables of the literature.
 UNCAPTIONED = {"method", "variant", "baseline"}
 
-CATEGORIES = {
-    "motion": {
-        "standing": "standing",
-        "straight": "straight on",
-        "turning-left": "turning left",
-        "turning-right": "turning right",
-        "slowing-down": "slowing down",
-        "speeding-up": "speeding up",
-    },
-    "type": {
-        "static": "I static",
-        "linear": "II linear",
-        "interacting": "III interacting",
-        "non-interacting": "IV non-interacting",
-    },
-    "interaction": {
-        "leader-follower": "leader-follower",
-        "collision-avoidance": "collision avoidance",
-        "group": "group",
-        "other": "other interaction",
-    },
+MOTIONS = {
+    "standing": "standing",
+    "straight": "straight on",
+    "turning-left": "turning left",
+    "turning-right": "turning right",
+    "slowing-down": "slowing down",
+    "speeding-up": "speeding up",
 }
 
 
@@ -243,19 +228,14 @@ def check_interval(cell, mean):
 
 
 def categories(group, header, caption):
-    """Errors by category, pooled over the pedestrians of the folds that all forecasters have."""
+    """Errors by kind of motion, pooled over the pedestrians of the folds that all forecasters have."""
     folds = caption.split("pooled over ")[1].split(". ")[0].split(", ")
     lines = [line for line in group.lines if all(row["scores"]["categories"] for row in line["rows"])]
     assert header[2:] == [line["label"] for line in lines], header
-    order = {}
-    for line in lines:
-        for row in line["rows"]:
-            for scores in row["scores"]["categories"]:
-                order.setdefault(json.dumps(scores["category"]), None)
-    names = [(kind, name) for kind in ("motion", "type", "interaction") for name in CATEGORIES[kind]]
+    present = [scores["category"] for line in lines for row in line["rows"] for scores in row["scores"]["categories"]]
     rows = []
-    for kind, name in names:
-        if json.dumps({kind: name}) not in order:
+    for motion, name in MOTIONS.items():
+        if {"motion": motion} not in present:
             continue
         cells, pedestrians = [], set()
         for line in lines:
@@ -265,7 +245,7 @@ def categories(group, header, caption):
                     scores
                     for row in of_fold(line, fold)
                     for scores in row["scores"]["categories"]
-                    if scores["category"] == {kind: name}
+                    if scores["category"] == {"motion": motion}
                 ]
                 if found:
                     weight = found[0]["pedestrians"]
@@ -277,7 +257,7 @@ def categories(group, header, caption):
                 cells.append(f"{ade / count:.3f}/{fde / count:.3f}")
             else:
                 cells.append("-")
-        rows.append([CATEGORIES[kind][name], " or ".join(map(str, sorted(pedestrians))), *cells])
+        rows.append([name, " or ".join(map(str, sorted(pedestrians))), *cells])
     return rows
 
 
@@ -336,7 +316,7 @@ def expected(table, report):
         return further(Group(rows, *codes[:3], subset), header, table["folds"], WHOLE_FORECAST)
     if caption.startswith("95 % intervals and paired differences. "):
         return intervals(Group(rows, *codes[:3], subset), table)
-    if " in metres by category of pedestrian" in caption:
+    if " in metres by kind of motion" in caption:
         return categories(Group(rows, *codes[:3], subset), header, caption)
     if caption.startswith("minADE/minFDE in metres by protocol."):
         groups = [Group(rows, codes[0], codes[1], protocol, subset) for protocol in ("published", "fair", "single")]

@@ -39,7 +39,7 @@ enum Seeds {
 pub struct Reader(&'static str, Seeds, fn(&[u8]));
 
 /// The readers that need no libtorch.
-pub const READERS: [Reader; 22] = [
+pub const READERS: [Reader; 21] = [
     Reader("table", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Table)),
     Reader("star_csv", Seeds::Corpus, |bytes| tracks::check(bytes, Format::StarCsv)),
     Reader("social_gan", Seeds::Corpus, |bytes| {
@@ -57,9 +57,6 @@ pub const READERS: [Reader; 22] = [
     }),
     Reader("foreign_table", Seeds::Corpus, |bytes| {
         external::check(bytes, ExternalFormat::Table);
-    }),
-    Reader("foreign_trajnet", Seeds::Corpus, |bytes| {
-        external::check(bytes, ExternalFormat::TrajNet);
     }),
     Reader("report", Seeds::Corpus, values::report),
     Reader("moments", Seeds::Corpus, values::moments),

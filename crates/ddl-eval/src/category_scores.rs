@@ -1,17 +1,18 @@
-//! The metrics of the pedestrians of one category.
+//! The metrics of the pedestrians of one kind of motion.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
+use serde_json::Value;
 
-use crate::category::Category;
+use crate::category::MotionKind;
 use crate::pedestrian_scores::PedestrianScores;
 use crate::protocol::Protocol;
 
-/// The metrics of one category on the test windows of one fold: means over its pedestrians.
+/// The metrics of one kind of motion on the test windows of one fold: means over its pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CategoryScores {
-    /// The category.
-    pub category: Category,
-    /// Pedestrians in it, at least one; a pedestrian in several windows counts once for each.
+    /// The kind.
+    pub category: MotionKind,
+    /// Pedestrians of this kind, at least one; a pedestrian in several windows counts once for each.
     pub pedestrians: usize,
     /// minADE over K, metres.
     pub min_ade: f64,
@@ -35,8 +36,17 @@ pub struct CategoryScores {
     pub joint_fde: Option<f64>,
 }
 
+/// Reads the scores by kind of motion. Earlier versions also wrote `TrajNet++`'s types and kinds of interaction.
+pub(crate) fn of_motion<'de, D: Deserializer<'de>>(field: D) -> Result<Vec<CategoryScores>, D::Error> {
+    let all = Vec::<Value>::deserialize(field)?.into_iter();
+    let is_of = |scores: &Value, kind: &str| scores["category"].get(kind).is_some();
+    let kept = all.filter(|scores| !is_of(scores, "type") && !is_of(scores, "interaction"));
+    kept.map(|scores| serde_json::from_value(scores).map_err(D::Error::custom))
+        .collect()
+}
+
 impl CategoryScores {
-    /// As [`Scores::errors`](crate::Scores::errors), of the category; `None` if they were not computed.
+    /// As [`Scores::errors`](crate::Scores::errors), of the kind; `None` if they were not computed.
     pub fn errors(&self, protocol: Protocol) -> Option<[f64; 2]> {
         match protocol {
             Protocol::Joint => Some([self.joint_ade?, self.joint_fde?]),
@@ -45,21 +55,15 @@ impl CategoryScores {
     }
 
     pub(crate) fn of<'a>(pedestrians: impl Iterator<Item = &'a PedestrianScores>) -> Vec<Self> {
-        let mut groups: Vec<(Category, Vec<&PedestrianScores>)> =
-            Category::all().map(|category| (category, Vec::new())).collect();
-        for pedestrian in pedestrians {
-            for (category, members) in &mut groups {
-                if pedestrian.categories.contains(category) {
-                    members.push(pedestrian);
-                }
-            }
-        }
-        groups.retain(|(_, members)| !members.is_empty());
-        let scores = groups.iter().map(|(category, members)| Self::mean(*category, members));
+        let pedestrians: Vec<&PedestrianScores> = pedestrians.collect();
+        let scores = MotionKind::ALL.into_iter().filter_map(|kind| {
+            let members: Vec<_> = pedestrians.iter().copied().filter(|p| p.motion == Some(kind)).collect();
+            (!members.is_empty()).then(|| Self::mean(kind, &members))
+        });
         scores.collect()
     }
 
-    fn mean(category: Category, members: &[&PedestrianScores]) -> Self {
+    fn mean(category: MotionKind, members: &[&PedestrianScores]) -> Self {
         let n = members.len() as f64;
         let mean = |metric: fn(&PedestrianScores) -> f64| members.iter().map(|w| metric(w)).sum::<f64>() / n;
         let share = |holds: fn(&PedestrianScores) -> bool| members.iter().filter(|w| holds(w)).count() as f64 / n;

@@ -15,7 +15,6 @@ mod pedestrian_key;
 mod samples;
 mod table;
 mod table_rows;
-mod trajnet;
 mod write;
 
 use std::fs::File;
@@ -41,17 +40,13 @@ pub enum ExternalFormat {
     JsonLines,
     /// A comma-separated table with a header and a row for each position, as `ddl forecast` writes it.
     Table,
-    /// The newline-delimited JSON of TrajNet++, with 8 observed and 12 forecast frames.
-    TrajNet,
 }
 
 impl ExternalFormat {
     /// The format of a file by its extension, in upper or lower case; JSON lines for other extensions.
     pub fn of_file(path: &Path) -> Self {
-        let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-        match extension.to_str() {
-            Some("csv") => Self::Table,
-            Some("ndjson") => Self::TrajNet,
+        match path.extension() {
+            Some(extension) if extension.eq_ignore_ascii_case("csv") => Self::Table,
             _ => Self::JsonLines,
         }
     }
@@ -96,7 +91,6 @@ pub fn read_from(
     match format {
         ExternalFormat::JsonLines => json_lines::read(lines, &mut expected),
         ExternalFormat::Table => table::read(lines, &mut expected),
-        ExternalFormat::TrajNet => trajnet::read(lines, &mut expected),
     }?;
     expected.matched(coverage)
 }

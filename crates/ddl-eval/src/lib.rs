@@ -29,7 +29,7 @@ mod scored_window;
 mod scores;
 pub mod significance;
 
-pub use category::{Category, MotionKind};
+pub use category::MotionKind;
 pub use category_scores::CategoryScores;
 pub use conditions::{Conditions, RecordingErrors, ResultRow};
 pub use error::{EvaluationError, WindowProblem};

@@ -1,6 +1,6 @@
 //! The metrics of one pedestrian of one window.
 
-use crate::category::Category;
+use crate::category::MotionKind;
 use crate::metric::amd::DistributionErrors;
 use crate::metric::collision::{self, PEDESTRIAN_RADIUS, collides, collides_with_true_futures};
 use crate::metric::displacement::{DisplacementErrors, expected, goal_fde};
@@ -39,7 +39,7 @@ pub(crate) struct PedestrianScores {
     pub(crate) familiarity: Option<f64>,
     /// ADE and FDE in the best future of the scene by each; `None` except under `joint`.
     pub(crate) joint: Option<[f64; 2]>,
-    pub(crate) categories: Vec<Category>,
+    pub(crate) motion: Option<MotionKind>,
 }
 
 impl PedestrianScores {
@@ -71,7 +71,7 @@ impl PedestrianScores {
                 regions: RegionScores::of(scene, i),
                 familiarity: forecast.familiarity(i),
                 joint: joint.map(|[ade, fde]| [errors.ade(i)[ade], errors.fde(i)[fde]]),
-                categories: Category::of(scene.full_window(), scene.index_in_full(i)),
+                motion: MotionKind::of(scene.window().track(i)),
             })
             .collect()
     }

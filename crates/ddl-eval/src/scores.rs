@@ -4,7 +4,7 @@ use ddl_core::{Forecast, Window};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::category_scores::CategoryScores;
+use crate::category_scores::{self, CategoryScores};
 use crate::error::{EvaluationError, WindowProblem};
 use crate::metric::amd::amv;
 use crate::metric::deployable::DeployableErrors;
@@ -90,8 +90,8 @@ pub struct Scores {
     /// Metrics of whole futures; `None` except under `joint`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<JointScores>,
-    /// The pedestrians by kind of motion, in the order of [`Category::all`](crate::category::Category::all).
-    #[serde(default)]
+    /// The pedestrians by kind of motion, in the order of [`MotionKind::ALL`](crate::MotionKind::ALL).
+    #[serde(default, deserialize_with = "category_scores::of_motion")]
     pub categories: Vec<CategoryScores>,
 }
 
@@ -109,7 +109,7 @@ impl Scores {
 
     /// [`Scores::evaluate`] for a part of the pedestrians; `full_windows` holds the full window of each.
     ///
-    /// Means are over the part. Collisions with true futures and interactions include all pedestrians. The collision
+    /// Means are over the part. Collisions with true futures include all pedestrians. The collision
     /// rate, JADE and JFDE compare forecasts, so they include only the pedestrians with forecasts.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! External forecasts, in the three formats.
+//! External forecasts, in both formats.
 
 use std::sync::OnceLock;
 

@@ -32,7 +32,7 @@ const CHANGE: f64 = 0.3;
 ///
 /// Left is from x to y, counter-clockwise where y points up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[serde(tag = "motion", rename_all = "kebab-case")]
 pub enum MotionKind {
     /// Within 1 m of the first position all the time.
     Standing,

@@ -9,7 +9,7 @@ use crate::external::hint::Unknown;
 use crate::external::lines::{Wrong, in_field, whole_line};
 use crate::external::pedestrian_key::{PedestrianKey, frames_ahead, last_observed, wrong_frames};
 
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Default)]
 pub(super) struct PedestrianForecast {
     /// `[K][12]`, metres.
     pub(super) positions: Vec<Position>,
@@ -43,10 +43,7 @@ impl PedestrianForecast {
 
 pub(super) struct Slot {
     pub(super) forecast: PedestrianForecast,
-    pub(super) line: usize,
-    /// Whether this is the primary pedestrian of the forecast; false only for neighbours of TrajNet++.
-    primary: bool,
-    pub(super) conflict: Option<usize>,
+    line: usize,
 }
 
 #[derive(Default)]
@@ -94,7 +91,7 @@ impl<'a> ExpectedForecasts<'a> {
         self.recordings.iter().position(|&name| name == recording)
     }
 
-    pub(super) fn window(&self, recording: usize, observed_until: i64) -> Option<usize> {
+    fn window(&self, recording: usize, observed_until: i64) -> Option<usize> {
         self.by_last.get(&(recording, observed_until)).copied()
     }
 
@@ -111,15 +108,8 @@ impl<'a> ExpectedForecasts<'a> {
         }
     }
 
-    /// Adds the forecast of a pedestrian from a line; `primary` is false for the neighbours of a scene, which may be
-    /// primary in another scene.
-    pub(super) fn put(
-        &mut self,
-        who: &PedestrianKey,
-        forecast: PedestrianForecast,
-        line: usize,
-        primary: bool,
-    ) -> Result<(), Wrong> {
+    /// Adds the forecast of a pedestrian from a line.
+    pub(super) fn put(&mut self, who: &PedestrianKey, forecast: PedestrianForecast, line: usize) -> Result<(), Wrong> {
         self.forecasts += 1;
         self.check(&forecast, line)?;
         let recording = self.recording(who.recording.as_deref())?;
@@ -134,25 +124,11 @@ impl<'a> ExpectedForecasts<'a> {
         };
         check_frames(&self.windows[window], forecast.frames.as_deref())?;
         let slot = &mut self.slots[window][pedestrian];
-        let new = Slot {
-            forecast,
-            line,
-            primary,
-            conflict: None,
-        };
-        match slot {
-            None => *slot = Some(new),
-            Some(known) if known.primary && primary => {
-                let first_line = known.line;
-                let problem = format!("line {first_line} already forecasts this pedestrian; keep one");
-                return Err(whole_line(problem));
-            }
-            Some(known) if !known.primary && primary => *known = new,
-            Some(known) if !known.primary && known.forecast != new.forecast => {
-                known.conflict = Some(line);
-            }
-            Some(_) => {}
+        if let Some(Slot { line: first_line, .. }) = slot {
+            let problem = format!("line {first_line} already forecasts this pedestrian; keep one");
+            return Err(whole_line(problem));
         }
+        *slot = Some(Slot { forecast, line });
         Ok(())
     }
 

@@ -85,13 +85,11 @@ fn problem(value: &Value, path: &Path) -> Option<String> {
         }
     }
     let expected = match (name, depth) {
-        ("observed_until" | "id" | "s" | "e" | "f" | "prediction_number" | "scene_id", 0) | ("frames", 1) => {
-            "a whole number"
-        }
-        ("pedestrian" | "p", 0) => "a whole number or a word",
+        ("observed_until", 0) | ("frames", 1) => "a whole number",
+        ("pedestrian", 0) => "a whole number or a word",
         ("recording", 0) => "a name in quotes",
         ("frames" | "hypotheses" | "positions", 0) => "a list",
-        ("hypotheses", 1) | ("scene" | "track", 0) => "an object",
+        ("hypotheses", 1) => "an object",
         ("positions", 1) | ("goal", 0) => "[x, y] in metres",
         _ => {
             let found = match wrong_value {

@@ -4,11 +4,12 @@ use std::io::BufRead;
 
 use ddl_core::{HORIZON, PedestrianName, Position};
 use serde::{Deserialize, Deserializer};
+use serde_json::{Map, Value};
 
 use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
 use crate::external::json::{self, Whole};
-use crate::external::lines::{Lines, Wrong, in_field, missing, within_bounds, wrong_length};
+use crate::external::lines::{Lines, Wrong, in_field, missing, whole_line, within_bounds, wrong_length};
 use crate::external::pedestrian_key::PedestrianKey;
 use crate::protocol::Protocol;
 
@@ -40,15 +41,24 @@ fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::
 
 pub(super) fn read(mut lines: Lines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
     while let Some((number, text)) = lines.next_line()? {
-        let taken = json::read(text).and_then(|line: JsonForecast| {
+        let taken = read_line(text).and_then(|line| {
             let (who, forecast) = line.taken_apart()?;
-            expected.put(&who, forecast, number, true)
+            expected.put(&who, forecast, number)
         });
         if let Err(wrong) = taken {
             return Err(lines.wrong(number, wrong));
         }
     }
     Ok(())
+}
+
+fn read_line(text: &str) -> Result<JsonForecast, Wrong> {
+    json::read(text).map_err(|wrong| {
+        let is_of_trajnet = |line: Map<String, Value>| line.keys().eq(["scene"]) || line.keys().eq(["track"]);
+        let remedy = "a scene or track of TrajNet++; convert the file to JSON lines as docs/your-model.md shows";
+        let known = serde_json::from_str(text).is_ok_and(is_of_trajnet);
+        if known { whole_line(remedy) } else { wrong }
+    })
 }
 
 impl JsonForecast {

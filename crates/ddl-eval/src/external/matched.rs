@@ -15,8 +15,8 @@ pub enum Coverage {
     /// Fail: the file must forecast exactly the pedestrians of the windows.
     #[default]
     Whole,
-    /// Score the pedestrians that are in both. The others still count for collisions with true futures, interactions
-    /// and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
+    /// Score the pedestrians that are in both. The others still count for collisions with true futures and baselines,
+    /// but not for the collision rate, JADE and JFDE, which compare forecasts.
     Intersection,
 }
 
@@ -77,7 +77,8 @@ impl ExpectedForecasts<'_> {
         let pedestrians: usize = self.windows.iter().map(Window::len).sum();
         let forecast_count = self.slots.iter().flatten().flatten().count();
         if self.forecasts == 0 {
-            return Err(self.wrong(1, "the file holds no forecast; is it empty or truncated?"));
+            let problem = "the file holds no forecast; is it empty or truncated?";
+            return Err(wrong(&self.origin, 1, whole_line(problem)));
         }
         let refused = match coverage {
             Coverage::Whole => self.unknown.count > 0,
@@ -103,7 +104,6 @@ impl ExpectedForecasts<'_> {
                 origin: self.origin,
             });
         }
-        self.refuse_conflicts()?;
         let mut matched = Matched {
             windows: Vec::with_capacity(self.windows.len()),
             full_windows: Vec::with_capacity(self.windows.len()),
@@ -139,28 +139,6 @@ impl ExpectedForecasts<'_> {
             named(Some(window.recording()), last_observed(window), &name)
         })
         .collect()
-    }
-
-    fn refuse_conflicts(&self) -> Result<(), ExternalError> {
-        for (window, slots) in self.windows.iter().zip(&self.slots) {
-            for (i, slot) in slots.iter().enumerate() {
-                if let Some(slot) = slot
-                    && let Some(line) = slot.conflict
-                {
-                    let (pedestrian, first_line) = (window.name(i), slot.line);
-                    let problem = format!(
-                        "pedestrian {pedestrian} is a neighbour in two scenes that forecast it differently (line \
-                         {first_line}); make it the primary pedestrian of one"
-                    );
-                    return Err(self.wrong(line, problem));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn wrong(&self, line: usize, problem: impl Into<String>) -> ExternalError {
-        wrong(&self.origin, line, whole_line(problem))
     }
 }
 

@@ -53,7 +53,7 @@ pub(super) fn wrong_frames(found: &[i64], expected: &[i64]) -> String {
     format!("the forecast has the frames {found}; the 12 after the last observed one are {expected}")
 }
 
-pub(super) fn in_short(frames: &[i64]) -> String {
+fn in_short(frames: &[i64]) -> String {
     match frames {
         [] => "none".to_owned(),
         [one] => one.to_string(),

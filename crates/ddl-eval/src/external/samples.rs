@@ -168,7 +168,7 @@ fn read_window(
             observed_until,
             pedestrian,
         };
-        let put = expected.put(&who, forecast, line, true);
+        let put = expected.put(&who, forecast, line);
         put.map_err(|problem| wrong(&samples[0].display().to_string(), line, problem))?;
     }
     Ok(())

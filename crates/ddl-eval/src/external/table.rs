@@ -44,7 +44,7 @@ fn put(
     let Some(group) = group else { return Ok(()) };
     let line = group.line;
     let (who, forecast) = group.forecast(numbering)?;
-    let put = expected.put(&who, forecast, line, true);
+    let put = expected.put(&who, forecast, line);
     put.map_err(|wrong| (line, wrong))
 }
 

@@ -16,8 +16,7 @@
 
 use ddl_core::Forecast;
 use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
-use ddl_eval::category::TrajectoryType;
-use ddl_eval::{Category, Conditions, FutureCollisions, MotionKind, Protocol, ResultRow, Scores};
+use ddl_eval::{Conditions, FutureCollisions, MotionKind, Protocol, ResultRow, Scores};
 
 type Path = fn(f64) -> Position;
 
@@ -175,12 +174,7 @@ fn categories() {
     // minADE, minFDE, FDE@minADE, missed, most likely ADE and FDE, collisions, ADE in future 0, FDE in future 1.
     let walking = [0.8, 0.2, 0.8, 0.0, 0.8, 0.8, 0.5, 0.8, 0.6];
     let standing = [1.5, 1.5, 1.5, 1.0, 1.5, 1.5, 1.0, 1.625, 1.5];
-    let by_hand = [
-        (Category::Motion(MotionKind::Standing), 1, standing),
-        (Category::Motion(MotionKind::Straight), 2, walking),
-        (Category::Type(TrajectoryType::Static), 1, standing),
-        (Category::Type(TrajectoryType::Linear), 2, walking),
-    ];
+    let by_hand = [(MotionKind::Standing, 1, standing), (MotionKind::Straight, 2, walking)];
     let categories = scores().categories;
     assert_eq!(categories.len(), by_hand.len());
     for (c, (category, pedestrians, by_hand)) in categories.iter().zip(by_hand) {

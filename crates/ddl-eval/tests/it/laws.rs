@@ -4,7 +4,7 @@ use ddl_core::{Forecast, distance};
 use ddl_data::{Convention, PedestrianId, Position, Rotation, WINDOW, Window, WindowRule};
 use ddl_eval::baseline::SocialForce;
 use ddl_eval::metric::collision::{closest_approach, collides};
-use ddl_eval::{Category, Conditions, EvaluationError, Protocol, ResultRow, Scores, WindowProblem};
+use ddl_eval::{Conditions, EvaluationError, MotionKind, Protocol, ResultRow, Scores, WindowProblem};
 use proptest::{collection::vec, prelude::*};
 use serde_json::Value;
 
@@ -76,7 +76,7 @@ fn in_order(forecast: &Forecast) -> Vec<usize> {
     (0..forecast.hypotheses()).collect()
 }
 
-/// Pedestrians of up to 2 m/s who turn and change speed somewhat, near one another: of all categories.
+/// Pedestrians of up to 2 m/s who turn and change speed somewhat, near one another: of all kinds of motion.
 fn walking(n: usize) -> impl Strategy<Value = Window> {
     let pedestrian = (
         (-3.0..3.0_f64, -3.0..3.0_f64),
@@ -102,8 +102,8 @@ fn walking(n: usize) -> impl Strategy<Value = Window> {
     })
 }
 
-fn categories(window: &Window) -> Vec<Vec<Category>> {
-    (0..window.len()).map(|i| Category::of(window, i)).collect()
+fn motions(window: &Window) -> Vec<Option<MotionKind>> {
+    (0..window.len()).map(|i| MotionKind::of(window.track(i))).collect()
 }
 
 proptest! {
@@ -240,8 +240,8 @@ proptest! {
         let mean = |radius: f64| (0..k).map(|future| share(future, radius)).sum::<f64>() / k as f64;
         prop_assert!(all_agree(&[joint.collisions.mean, joint.close_collisions.mean], &[mean(0.2), mean(0.1)]));
         prop_assert!(all_agree(&[joint.collisions.truth], &[s.true_collision_rate]));
-        let types = s.categories.iter().filter(|c| matches!(c.category, Category::Type(_)));
-        let sum = types.map(|c| c.joint_ade.unwrap() * c.pedestrians as f64).sum::<f64>();
+        let kinds = s.categories.iter();
+        let sum = kinds.map(|c| c.joint_ade.unwrap() * c.pedestrians as f64).sum::<f64>();
         prop_assert!(all_agree(&[sum / n as f64], &[s.joint_ade]));
     }
 
@@ -259,41 +259,32 @@ proptest! {
             prop_assert!((-highest - 1e-9..=20.0).contains(&nll));
             prop_assert!(s.amv.unwrap() >= 1e-4 - 1e-12 && s.amd.unwrap() >= 0.0);
         }
-        // Each pedestrian has one motion kind and one type; sub-kinds are of type III.
-        let count_where = |wanted: fn(&Category) -> bool| -> usize {
-            let members = s.categories.iter().filter(|c| wanted(&c.category));
-            members.map(|c| c.pedestrians).sum()
-        };
-        prop_assert_eq!(count_where(|c| matches!(c, Category::Motion(_))), s.pedestrians);
-        prop_assert_eq!(count_where(|c| matches!(c, Category::Type(_))), s.pedestrians);
-        // So the means of the types, weighted by their pedestrians, are the totals.
-        let types = s.categories.iter().filter(|c| matches!(c.category, Category::Type(_)));
-        let mean = types.map(|c| c.min_ade * c.pedestrians as f64).sum::<f64>();
+        // Each pedestrian has one kind of motion, so the means of the kinds, weighted by their pedestrians, are the
+        // totals.
+        let kinds = s.categories.iter();
+        prop_assert_eq!(kinds.clone().map(|c| c.pedestrians).sum::<usize>(), s.pedestrians);
+        let mean = kinds.map(|c| c.min_ade * c.pedestrians as f64).sum::<f64>();
         prop_assert!(all_agree(&[mean / s.pedestrians as f64], &[s.min_ade]));
     }
 
     #[test]
-    fn categories_of_a_moved_mirror_image_are_mirrored(
+    fn motions_of_a_moved_mirror_image_are_mirrored(
         window in walking(4),
         angle in 0.0..std::f64::consts::TAU,
         [dx, dy] in position(),
     ) {
-        use ddl_eval::MotionKind::{TurningLeft, TurningRight};
+        use MotionKind::{TurningLeft, TurningRight};
         let rotation = Rotation::new(angle);
-        let moved = categories(&window.map_positions(|_, _, [x, y]| {
+        let moved = motions(&window.map_positions(|_, _, [x, y]| {
             let [x, y] = rotation.apply([x, -y]);
             [x + dx, y + dy]
         }));
-        let swap = |category: Category| match category {
-            Category::Motion(TurningLeft) => Category::Motion(TurningRight),
-            Category::Motion(TurningRight) => Category::Motion(TurningLeft),
+        let mirrored = motions(&window).into_iter().map(|kind| match kind {
+            Some(TurningLeft) => Some(TurningRight),
+            Some(TurningRight) => Some(TurningLeft),
             other => other,
-        };
-        let expected: Vec<Vec<Category>> = categories(&window)
-            .into_iter()
-            .map(|of_one| of_one.into_iter().map(swap).collect())
-            .collect();
-        prop_assert_eq!(moved, expected);
+        });
+        prop_assert_eq!(moved, mirrored.collect::<Vec<_>>());
     }
 
     #[test]

@@ -6,4 +6,3 @@ mod external;
 mod generated;
 mod hand_example;
 mod laws;
-mod real_recordings;

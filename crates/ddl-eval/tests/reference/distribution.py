@@ -1,7 +1,6 @@
 # Writes distribution.json: log densities of scipy.stats.gaussian_kde with weights (scipy 1.17.1), and
 # Mahalanobis distances and largest eigenvalues with numpy 2.4.6. `python3 distribution.py` in this folder.
-# Also prints the end that a Kalman filter with whole matrices expects (src/category/kalman.rs), and the
-# numbers of the hand example (tests/it/hand_example.rs).
+# Also prints the numbers of the hand example (tests/it/hand_example.rs).
 import json
 
 import numpy as np
@@ -64,20 +63,6 @@ def cases():
     yield case([[0.0, 0.0], [0.001, 0.0], [0.0, 0.002]], [0.2, 0.3, 0.5], [0.01, 0.02])
 
 
-def kalman(observed):
-    transition = np.kron(np.eye(2), [[1, 1], [0, 1]])
-    sees = np.kron(np.eye(2), [[1, 0]])
-    state, covariance = np.array([observed[0][0], 0, observed[0][1], 0]), np.eye(4)
-    for t, z in enumerate(observed):
-        if t:
-            state, covariance = transition @ state, transition @ covariance @ transition.T + 1e-5 * np.eye(4)
-        gain = covariance @ sees.T @ np.linalg.inv(sees @ covariance @ sees.T + 0.05**2 * np.eye(2))
-        state, covariance = state + gain @ (np.asarray(z) - sees @ state), covariance - gain @ sees @ covariance
-    for _ in range(12):
-        state = transition @ state
-    return sees @ state
-
-
 def hand_example():
     # Offsets from the truth of the two hypotheses of A, B and C at the frames 1 to 12, and their weights.
     frames = range(1, 13)
@@ -96,6 +81,4 @@ def hand_example():
 
 
 json.dump(dict(cases=list(cases())), open("distribution.json", "w"), indent=1)
-walk = [[0.0, 0.0], [0.4, 0.1], [0.9, 0.1], [1.3, 0.3], [1.6, 0.6], [2.1, 0.7], [2.4, 1.1], [2.9, 1.2]]
-print("Kalman:", *(repr(float(c)) for c in kalman(walk)))
 print("hand example, KDE NLL, AMD, AMV:", *(repr(float(c)) for c in hand_example()))

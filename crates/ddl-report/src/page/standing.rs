@@ -30,8 +30,8 @@ pub(super) struct StandingLine {
 }
 
 impl Standing {
-    /// The forecaster that is the subject of the report: the best trained one, without its variations ("DDL", not "DDL as
-    /// packed"). If there is no trained one, it is that of another program, otherwise the best one.
+    /// The forecaster that is the subject of the report: the best trained one, without its variations ("DDL", not "DDL
+    /// as packed"). If there is no trained one, it is that of another program, otherwise the best one.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
         let foreign = |line: &&StandingLine| line.conditions.selection.is_some();

@@ -1,22 +1,20 @@
-//! Results by kind of motion and of interaction.
+//! Results by kind of motion.
 
 use std::fmt;
 
-use ddl_eval::{CategoryScores, category::Category};
+use ddl_eval::{CategoryScores, MotionKind};
 
 use crate::document::{Part, Table};
 use crate::report::cells::{counts, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
 
-pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres (under `joint` JADE/JFDE: the \
-    errors in the future that is best for the whole scene), mean over the pedestrians of the folds named, which all \
-    forecasters of the table have (not over the folds, some of which hold few pedestrians of a kind). First the \
-    pedestrian's own motion, then the types of TrajNet++ (static, linear, interacting, \
-    non-interacting), then the kinds of interaction, of which a pedestrian may have several. The categories are \
-    computed from the true future, after the forecasts are made.";
+pub(super) const LEGEND: &str = "By kind of motion: minADE/minFDE in metres (under `joint` JADE/JFDE: the errors in \
+    the future that is best for the whole scene), mean over the pedestrians of the folds named, which all forecasters \
+    of the table have (not over the folds, some of which hold few pedestrians of a kind). The kinds are computed from \
+    the true future, after the forecasts are made.";
 
-/// One table with a line for each category and a column for each forecaster. Empty if no row has scores by category, or
-/// if the forecasters share no fold.
+/// One table with a line for each kind of motion and a column for each forecaster. Empty if no row has scores by kind,
+/// or if the forecasters share no fold.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let lines: Vec<(&TableLine<'_>, String)> = group
         .labelled()
@@ -32,24 +30,21 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     if lines.is_empty() || folds.is_empty() {
         return Vec::new();
     }
-    let columns = ["category", "pedestrians"].map(str::to_owned).into_iter();
+    let columns = ["motion", "pedestrians"].map(str::to_owned).into_iter();
     let mut table = Table::new(columns.chain(lines.iter().map(|(_, label)| label.clone())));
-    for category in Category::all() {
-        let cells: Vec<Option<Pooled>> = lines
-            .iter()
-            .map(|(line, _)| Pooled::of(line, &folds, category))
-            .collect();
+    for kind in MotionKind::ALL {
+        let cells: Vec<Option<Pooled>> = lines.iter().map(|(line, _)| Pooled::of(line, &folds, kind)).collect();
         if cells.iter().all(Option::is_none) {
             continue;
         }
         let pedestrians = cells.iter().flatten().map(|cell| cell.pedestrians);
-        let start = [category.to_string(), counts(pedestrians.collect())];
+        let start = [kind.to_string(), counts(pedestrians.collect())];
         table.row(start.into_iter().chain(cells.into_iter().map(or_nothing)));
     }
     vec![
-        Part::subheading("By category of pedestrian"),
+        Part::subheading("By kind of motion"),
         Part::Table(table.captioned(format!(
-            "{} in metres by category of pedestrian, pooled over {}. {}",
+            "{} in metres by kind of motion, pooled over {}. {}",
             group.errors(),
             folds.join(", "),
             group.conditions_in_words()
@@ -63,15 +58,15 @@ struct Pooled {
 }
 
 impl Pooled {
-    /// Seeds are averaged on each fold first; `None` without pedestrians of the category.
-    fn of(line: &TableLine<'_>, folds: &[&str], category: Category) -> Option<Self> {
+    /// Seeds are averaged on each fold first; `None` without pedestrians of the kind.
+    fn of(line: &TableLine<'_>, folds: &[&str], kind: MotionKind) -> Option<Self> {
         let protocol = line.conditions().protocol;
         let (mut pedestrians, mut sums) = (0, [0.0; 2]);
         for fold in folds {
             let of_seeds: Vec<(usize, [f64; 2])> = line
                 .on(fold)
                 .flat_map(|row| &row.scores.categories)
-                .filter(|scores| scores.category == category)
+                .filter(|scores| scores.category == kind)
                 .filter_map(|scores: &CategoryScores| Some((scores.pedestrians, scores.errors(protocol)?)))
                 .collect();
             // Every seed is scored on the same windows.

@@ -6,7 +6,7 @@ mod wording;
 
 use ddl_data::{Convention, WindowRule};
 use ddl_eval::significance::BlockErrors;
-use ddl_eval::{Category, CategoryScores, Conditions, MotionKind, Protocol, ResultRow, Scores, StabilityScores};
+use ddl_eval::{CategoryScores, Conditions, MotionKind, Protocol, ResultRow, Scores, StabilityScores};
 use ddl_report::page::Page;
 use ddl_report::{Report, ReportError};
 
@@ -68,7 +68,7 @@ fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
 
 fn turning(pedestrians: usize, min_ade: f64) -> Vec<CategoryScores> {
     vec![CategoryScores {
-        category: Category::Motion(MotionKind::TurningLeft),
+        category: MotionKind::TurningLeft,
         pedestrians,
         min_ade,
         min_fde: 2.0 * min_ade,
@@ -155,6 +155,22 @@ fn scores_written_before_there_were_more_metrics_still_load() {
     let scores: Scores = serde_json::from_str(text).unwrap();
     assert_eq!((scores.kde_nll, scores.categories.len()), (None, 0));
     assert_eq!(scores.stability.unwrap().certified, None);
+}
+
+#[test]
+fn scores_of_categories_that_there_are_no_more_are_left_out() {
+    let mut scores = scores(0.1);
+    scores.categories = turning(3, 0.1);
+    let text = serde_json::to_string(&scores).unwrap();
+    let motion = r#"{"category":{"motion":"turning-left"},"#;
+    assert!(text.contains(motion), "{text}");
+    let with = |category: &str| text.replace(motion, &format!(r#"{{"category":{category}}},{motion}"#));
+    for removed in [r#"{"type":"interacting"}"#, r#"{"interaction":"leader-follower"}"#] {
+        let read: Scores = serde_json::from_str(&with(removed)).unwrap();
+        assert_eq!(read, scores);
+    }
+    let unknown = serde_json::from_str::<Scores>(&with(r#"{"gait":"hasty"}"#)).unwrap_err();
+    assert!(unknown.to_string().contains("missing field `motion`"), "{unknown}");
 }
 
 #[test]

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct OtherProgram {
     /// Instead of a model: another program's forecasts of the lines of `ddl windows` (docs/your-model.md)
     ///
-    /// The extension selects the format: jsonl, csv, or ndjson for TrajNet++. A folder has sample files.
+    /// The extension selects the format: csv, or JSON lines for others. A folder has sample files.
     #[arg(
         long,
         value_name = "FILE",

@@ -80,36 +80,3 @@ pub(crate) fn table() -> String {
         + &rows("yard", 70, 5, 0, 1.0, 2.0)
         + &rows("yard", 80, 5, 0, 1.0, 3.0)
 }
-
-pub(crate) fn scene(id: i64, primary: i64, start: i64) -> String {
-    let end = start + 190;
-    format!(
-        "{{\"scene\": {{\"id\": {id}, \"p\": {primary}, \"s\": {start}, \"e\": {end}, \"fps\": 2.5, \"tag\": 0}}}}\n"
-    )
-}
-
-pub(crate) fn tracks(scene: i64, pedestrian: i64, prediction: i64, until: i64, x: f64) -> String {
-    (1..=12).fold(String::new(), |mut text, t| {
-        let f = until + 10 * t;
-        writeln!(
-            text,
-            "{{\"track\": {{\"f\": {f}, \"p\": {pedestrian}, \"x\": {x:?}, \"y\": 0.0, \
-            \"prediction_number\": {prediction}, \"scene_id\": {scene}}}}}"
-        )
-        .unwrap();
-        text
-    })
-}
-
-/// Scene 0 forecasts 3 and its neighbours 5 and 9, which is in no window; in scene 1 pedestrian 5 is primary.
-pub(crate) fn ndjson() -> String {
-    scene(0, 3, 0)
-        + "{\"track\": {\"f\": 0, \"p\": 3, \"x\": 0.0, \"y\": 0.0}}\n"
-        + &tracks(0, 3, 0, 70, 1.0)
-        + &tracks(0, 5, 0, 70, 8.0)
-        + &tracks(0, 9, 0, 70, 9.0)
-        + &scene(1, 5, 0)
-        + &scene(2, 5, 10)
-        + &tracks(1, 5, 0, 70, 2.0)
-        + &tracks(2, 5, 0, 80, 3.0)
-}

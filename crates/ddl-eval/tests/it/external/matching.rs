@@ -10,8 +10,7 @@ use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat};
 use ddl_eval::{Conditions, Protocol, Scores};
 
 use super::files::{
-    HEADER, complaint, conditions, expected, hypothesis, line, ndjson, of, read, rows, scene, still, table, tracks,
-    whole, windows,
+    HEADER, complaint, conditions, expected, hypothesis, line, of, read, rows, still, table, whole, windows,
 };
 
 #[test]
@@ -28,7 +27,6 @@ fn every_format_says_the_same() {
             table().replace("yard,", "\"yard\" ,").replace(",3,0,", ",3.0, 0 ,"),
             ExternalFormat::Table,
         ),
-        (ndjson(), ExternalFormat::TrajNet),
     ] {
         let matched = read(&text, format, Coverage::Whole).unwrap();
         assert_eq!(matched.forecasts, expected(), "{format:?}");
@@ -36,43 +34,6 @@ fn every_format_says_the_same() {
         assert_eq!(matched.pedestrians(), 3);
         assert_eq!(matched.test_subset(), None);
     }
-}
-
-/// A neighbour counts if it is not primary in any scene. The benchmark of TrajNet++ shows one more frame before the
-/// forecast; that of the last scene is the first frame of the other window.
-#[test]
-fn scenes_of_trajnet_stand_for_windows() {
-    let of_9 = |id, primary, start: i64| {
-        let from = format!("\"s\": {start},");
-        scene(id, primary, start).replace(&from, &format!("\"s\": {},", start - 10))
-    };
-    let last = tracks(2, 5, 0, 80, 3.0);
-    let first = tracks(0, 3, 0, 70, 1.0);
-    let neighbour = first.clone() + &tracks(0, 5, 0, 70, 2.0);
-    let alone = first + &tracks(1, 5, 0, 70, 2.0);
-    for text in [
-        scene(0, 3, 0) + &neighbour + &scene(2, 5, 10) + &last,
-        of_9(0, 3, 0) + &of_9(1, 5, 0) + &of_9(2, 5, 10) + &alone + &last,
-    ] {
-        let matched = read(&text, ExternalFormat::TrajNet, Coverage::Whole).unwrap();
-        assert_eq!(matched.forecasts, expected());
-    }
-}
-
-/// A scene that starts with no window is matched by its end, but its forecasts must be of the frames before it.
-#[test]
-fn forecasts_of_other_frames_are_refused() {
-    let early = scene(0, 3, 0).replace("\"s\": 0,", "\"s\": -50,");
-    let read = |tracks: String| {
-        read(
-            &(early.clone() + &tracks),
-            ExternalFormat::TrajNet,
-            Coverage::Intersection,
-        )
-    };
-    assert_eq!(read(tracks(0, 3, 0, 70, 1.0)).unwrap().forecasts.len(), 1);
-    let refused = read(tracks(0, 3, 0, 1_000_070, 1.0)).unwrap_err().to_string();
-    assert!(refused.contains("the forecast has the frames 1000080"), "{refused}");
 }
 
 #[test]
@@ -92,19 +53,12 @@ fn pedestrians_may_have_words_for_names() {
     assert!(asked.contains("\"pedestrian\":\"007\""), "{asked}");
 
     let (mut lines, mut table) = (String::new(), HEADER.to_owned());
-    let mut scenes = String::new();
-    for (id, word) in (0..).zip(words) {
+    for word in words {
         let quoted = format!("\"{word}\"");
         lines += &line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", &format!(":{quoted},\"hyp"));
         table += &rows("yard", 70, 4, 0, 1.0, 1.0).replace(",70,4,", &format!(",70,{word},"));
-        let scene = scene(id, 4, 0) + &tracks(id, 4, 0, 70, 1.0);
-        scenes += &scene.replace("\"p\": 4", &format!("\"p\": {quoted}"));
     }
-    for (text, format) in [
-        (lines, ExternalFormat::JsonLines),
-        (table, ExternalFormat::Table),
-        (scenes, ExternalFormat::TrajNet),
-    ] {
+    for (text, format) in [(lines, ExternalFormat::JsonLines), (table, ExternalFormat::Table)] {
         let matched = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole);
         let both = [still(1.0, 0.0), still(1.0, 0.0)].concat();
         let both = Forecast::with_equal_weights(2, 1, both).unwrap();
@@ -193,7 +147,6 @@ fn extensions_name_the_format_in_capitals_too() {
     for (name, format) in [
         ("a.csv", ExternalFormat::Table),
         ("a.CSV", ExternalFormat::Table),
-        ("a.NdJson", ExternalFormat::TrajNet),
         ("a.JSONL", ExternalFormat::JsonLines),
         ("a", ExternalFormat::JsonLines),
     ] {

@@ -2,7 +2,7 @@
 
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 
-use super::files::{HEADER, complaint, hypothesis, line, rows, scene, tracks, whole, windows};
+use super::files::{HEADER, complaint, hypothesis, line, rows, whole, windows};
 
 const CASES: &str = include_str!("mistakes.txt");
 
@@ -102,33 +102,6 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
 }
 
 #[test]
-fn every_mistake_of_trajnet_is_named_with_its_place() {
-    let format = ExternalFormat::TrajNet;
-    let observed = tracks(0, 3, 0, 70, 1.0);
-    let good = scene(0, 3, 0) + &observed;
-    check(format, &scene(0, 3, 0), "1: the file holds no forecast");
-    check_all(format, "edits of TrajNet++", |parts| edited(&good, parts[0], parts[1]));
-    // Scenes (id, primary pedestrian, start) and their tracks (scene, pedestrian, number, last observed frame, x).
-    let text_of = |sequence: &str| {
-        let part = |part: &str| {
-            let (kind, numbers) = part.split_at(1);
-            let n: Vec<i64> = numbers.split('/').map(|n| n.parse().unwrap()).collect();
-            match kind {
-                "S" => scene(n[0], n[1], n[2]),
-                _ => tracks(n[0], n[1], n[2], n[3], n[4] as f64),
-            }
-        };
-        sequence.split(' ').map(part).collect::<String>()
-    };
-    check_all(format, "sequences of TrajNet++", |parts| text_of(parts[0]));
-    let one_more = good + &observed.lines().next().unwrap().replace("190", "200");
-    check(format, &one_more, "14, prediction_number 0: 13 positions");
-    let many = (0..1000).fold(scene(0, 3, 0), |text, k| text + &tracks(0, 3, k, 70, 1.0));
-    let expected = "242, track.prediction_number: more than 20 hypotheses of observed until 70 pedestrian 3";
-    check(format, &many, expected);
-}
-
-#[test]
 fn text_that_is_not_utf8_is_refused_at_its_line() {
     let mut bytes = whole().into_bytes();
     bytes.extend(b"\xff\xfe\n");
@@ -136,7 +109,6 @@ fn text_that_is_not_utf8_is_refused_at_its_line() {
     for (format, text, line) in [
         (ExternalFormat::JsonLines, &bytes[..], 4),
         (ExternalFormat::Table, other, 2),
-        (ExternalFormat::TrajNet, other, 2),
     ] {
         let error = external::read_from(text, "f", format, &windows(), Coverage::Whole);
         let expected = format!("f, line {line}: the text is not UTF-8");
