@@ -9,9 +9,8 @@
 //! bit.
 //!
 //! Eight rows advance together along antidiagonals. The loops are compiled for each instruction set, and all give the
-//! same bits: products are fused everywhere, in software (slowly) on processors without the instruction. If costs are
-//! small and sequences short, R stays in the range of `f64` and needs no separate exponent; a bound of the costs
-//! decides this in advance. If costs may exceed about 10¹⁵ γ, or if γ = 0, the recursion runs in the log domain.
+//! same bits: products are fused everywhere, in software (slowly) on processors without the instruction. If costs may
+//! exceed about 10¹⁵ γ, or if γ = 0, the recursion runs in the log domain.
 //!
 //! ## How the search stays exact and fast
 //!
