@@ -32,8 +32,8 @@
 //!
 //! ## Accuracy and cost
 //!
-//! Counted with callgrind, a pair of 7 / 8 steps takes 347 / 478 instructions with AVX2 and
-//! 1050 / 1330 with portable code; the compiled loop of AVX-512 has about 56 / 68.
+//! Counted with callgrind, a pair of 7 / 8 steps takes 347 / 478 instructions with AVX2 and 1050 / 1330 with portable
+//! code.
 
 mod backward;
 mod blocks;
