@@ -60,7 +60,7 @@ pub const READERS: [Reader; 21] = [
     }),
     Reader("report", Seeds::Corpus, values::report),
     Reader("moments", Seeds::Corpus, values::moments),
-    Reader("goal_library", Seeds::Corpus, values::goal_library),
+    Reader("goal_params", Seeds::Corpus, values::goal_params),
     Reader("scene_memory", Seeds::None, scene_memory::read),
     Reader("packed_model", Seeds::None, model_files::packed_model),
     Reader("run_config", Seeds::Corpus, model_files::run_config),

@@ -1,7 +1,6 @@
 //! The library of complete tracks.
 
 use ddl_core::WINDOW;
-use serde::{Deserialize, Serialize};
 
 use crate::error::{LibraryError, TrackError};
 use crate::span::check_finite;
@@ -16,27 +15,11 @@ use crate::span::check_finite;
 /// assert_eq!(library.tracks().len(), 1);
 /// # Ok::<(), ddl_goal::LibraryError>(())
 /// ```
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "UncheckedLibrary")]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ExpertLibrary {
     /// Seconds between two positions of a track.
     pub(crate) time_step: f64,
     tracks: Vec<Vec<[f64; 2]>>,
-}
-
-#[derive(Deserialize)]
-#[serde(rename = "ExpertLibrary", deny_unknown_fields)]
-struct UncheckedLibrary {
-    time_step: f64,
-    tracks: Vec<Vec<[f64; 2]>>,
-}
-
-impl TryFrom<UncheckedLibrary> for ExpertLibrary {
-    type Error = LibraryError;
-
-    fn try_from(unchecked: UncheckedLibrary) -> Result<Self, LibraryError> {
-        Self::new(unchecked.tracks, unchecked.time_step)
-    }
 }
 
 impl ExpertLibrary {
@@ -116,15 +99,5 @@ mod tests {
         broken[19][1] = f64::INFINITY;
         let error = refused(&[&broken], 0.4).to_string();
         assert_eq!(error, "track 0 of the library: position 19 is (0, inf): must be finite");
-    }
-
-    #[test]
-    fn a_library_survives_json_and_an_invalid_one_is_refused() {
-        let track: Vec<[f64; 2]> = (0..20).map(|i| [0.1 * f64::from(i), 1.0 / 3.0]).collect();
-        let library = ExpertLibrary::new(vec![track], 0.4).unwrap();
-        let json = serde_json::to_string(&library).unwrap();
-        let read = serde_json::from_str::<ExpertLibrary>;
-        assert_eq!(read(&json).unwrap(), library);
-        assert!(read(&json.replace("0.4", "-0.4")).is_err());
     }
 }

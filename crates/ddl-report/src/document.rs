@@ -5,6 +5,6 @@ mod markdown;
 mod parts;
 mod table;
 
-pub(crate) use html::{ContentsEntry, identifier, inline, unused, warning};
+pub(crate) use html::{ContentsEntry, inline, warning};
 pub(crate) use parts::{Document, Part};
 pub(crate) use table::Table;

@@ -10,7 +10,6 @@ mod cut;
 pub(crate) mod drawing;
 mod legend;
 pub(crate) mod marks;
-pub(crate) mod over_time;
 pub(crate) mod pedestrian;
 mod place;
 pub(crate) mod plan;

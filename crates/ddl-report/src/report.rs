@@ -26,7 +26,6 @@ mod summary;
 mod watching;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
-pub(crate) use watching::figures as watching_figures;
 
 const FORMAT: u32 = 1;
 

@@ -30,13 +30,13 @@ const POLYNOMIAL: [f64; 12] = [
     4.435_280_944_610_336_161_06e-10,
 ];
 
-/// 2^exponent as a factor from 2^−1/2 to 2^1/2 and an integer power of two: (factor, integer). |exponent| must be below
+/// 2^exponent as a factor from 2^−1/2 to 2^1/2 and an integer power of two: [factor, integer]. |exponent| must be below
 /// 2^51.
 ///
 /// # Numerics
 /// The relative error of the factor is below 3.1e-16 (2.8 rounding units), and the factor is exactly 1 for integers.
 #[inline(always)]
-pub(crate) fn exp2_parts<S: Simd>(simd: S, exponent: f64x8<S>) -> (f64x8<S>, f64x8<S>) {
+pub(crate) fn exp2_parts<S: Simd>(simd: S, exponent: f64x8<S>) -> [f64x8<S>; 2] {
     let integer = (exponent + ROUNDING) - ROUNDING;
     let fraction = exponent - integer;
     let squared = fraction * fraction;
@@ -53,7 +53,7 @@ pub(crate) fn exp2_parts<S: Simd>(simd: S, exponent: f64x8<S>) -> (f64x8<S>, f64
         ];
     }
     let [even, odd] = sums;
-    (odd.mul_add_precise(fraction, even), integer)
+    [odd.mul_add_precise(fraction, even), integer]
 }
 
 /// number · 2^exponent for a positive normal number and an integer exponent of at least −2000. If the product is below
@@ -77,7 +77,7 @@ mod tests {
     impl Kernel for Parts<'_> {
         #[inline]
         fn run<S: Simd>(self, simd: S) {
-            let (factor, integer) = exp2_parts(simd, f64x8::load_array_ref(simd, self.0));
+            let [factor, integer] = exp2_parts(simd, f64x8::load_array_ref(simd, self.0));
             factor.store_array(&mut self.1[0]);
             integer.store_array(&mut self.1[1]);
             times_power(factor, integer).store_array(&mut self.1[2]);

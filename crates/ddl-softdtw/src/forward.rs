@@ -7,8 +7,7 @@
 //! ```
 //!
 //! so a cell needs one exponential and no logarithm. R is held as `significand · 2^exponent`, the exponent an exact
-//! integer: nothing cancels and nothing underflows. Short sequences with small costs do without the exponent, and give
-//! the same bits.
+//! integer: nothing cancels and nothing underflows.
 //!
 //! # Error
 //! To first order in u = 2^−53, the relative error of R is at most the largest error of a path, the sum of the errors
@@ -25,8 +24,9 @@
 
 use ddl_simd::{Dispatch, Kernel, Simd};
 
-use crate::grid::{Grid, Recursion, STRIP, Slanted, Strip};
-use crate::weight::{Cells, Plain, Scaled, Total, Weight, below, lane, only, splat};
+use crate::exp2::exp2_parts;
+use crate::grid::{Grid, STRIP, Slanted, Strip};
+use crate::weight::{Cells, NONE, Weight, below, lane, normalised, normalised_one, only, splat, sums};
 
 /// Entries of the working memory that fit on the stack.
 const SHORT: usize = 48;
@@ -37,11 +37,11 @@ pub(crate) const STRETCH: usize = 128;
 
 /// What the backward recursion needs of a step of a strip.
 #[derive(Clone, Copy)]
-pub(crate) struct Step<S: Simd, const C: usize> {
+pub(crate) struct Step<S: Simd> {
     /// 2^−t of each cell.
-    pub(crate) factor: Cells<S, C>,
+    pub(crate) factor: Cells<S>,
     /// R of each cell.
-    pub(crate) cells: Cells<S, C>,
+    pub(crate) cells: Cells<S>,
 }
 
 impl<const D: usize> Grid<'_, D> {
@@ -52,79 +52,72 @@ impl<const D: usize> Grid<'_, D> {
 
     /// The value. It has the same bits for every instruction set, because the same products are fused everywhere.
     fn value_with(&self, dispatch: Dispatch) -> f64 {
-        let mut value = 0.0;
-        match self.recursion() {
-            Recursion::LogDomain => value = self.log_domain_value(),
-            recursion => dispatch.run(Forward {
-                grid: self,
-                recursion,
-                value: &mut value,
-            }),
+        if !self.is_exact() {
+            return self.log_domain_value();
         }
+        let mut value = 0.0;
+        dispatch.run(Forward(self, &mut value));
         value
     }
 
     /// −γ ln R.
-    pub(crate) fn value_of(&self, (significand, exponent): Total) -> f64 {
+    pub(crate) fn value_of(&self, [significand, exponent]: Weight) -> f64 {
         -self.gamma * (exponent * std::f64::consts::LN_2 + significand.ln())
     }
 
-    /// R of the last cell, computed from R(0, 0) = 2^`start` and divided by it. `steps` receives all steps if `RECORD`.
+    /// R of the last cell, with a significand in [1, 2). `steps` receives all steps if `RECORD`.
     #[inline(always)]
-    pub(crate) fn forward<S: Simd, W: Weight<C>, const C: usize, const RECORD: bool>(
+    pub(crate) fn forward<S: Simd, const RECORD: bool>(
         &self,
         simd: S,
-        start: f64,
         columns: &Slanted<D>,
-        steps: &mut Vec<Step<S, C>>,
-    ) -> Total {
+        steps: &mut Vec<Step<S>>,
+    ) -> Weight {
         // Entry c + 7 is column c. A step reads entry d + 7 (column d) for its first lane and writes entry d (column d
         // − 7) from its last; seven additional entries before and after the columns serve the slanted ends of a strip.
-        let (mut short, mut long) = ([W::NONE; SHORT], Vec::new());
+        let (mut short, mut long) = ([NONE; SHORT], Vec::new());
         let length = self.columns.len() + 2 * (STRIP - 1);
         let row = if length <= SHORT {
             &mut short[..length]
         } else {
-            long.resize(length, W::NONE);
+            long.resize(length, NONE);
             &mut long
         };
         for index in 0..self.strips() {
             let strip = self.strip(index);
             let before = steps.len();
             if RECORD {
-                let none = splat(simd, W::NONE);
+                let none = splat(simd, NONE);
                 let (factor, cells) = (none, none);
                 steps.resize(before + strip.end + 1 - strip.start, Step { factor, cells });
             }
-            self.advance::<S, W, C, RECORD>(simd, &strip, W::power(start), columns, row, &mut steps[before..]);
+            self.advance::<S, RECORD>(simd, &strip, columns, row, &mut steps[before..]);
             if (index + 1) % (STRETCH / STRIP) == 0 {
                 for cell in &mut *row {
-                    *cell = W::normalised_one(*cell);
+                    *cell = normalised_one(*cell);
                 }
             }
         }
-        let (significand, exponent) = W::total(row[self.columns.len() + STRIP - 2]);
-        (significand, exponent - start)
+        normalised_one(row[self.columns.len() + STRIP - 2])
     }
 
     /// Computes one strip. Before the call `row` holds the row above the strip, after it the last row of the strip.
     #[inline(always)]
-    fn advance<S: Simd, W: Weight<C>, const C: usize, const RECORD: bool>(
+    fn advance<S: Simd, const RECORD: bool>(
         &self,
         simd: S,
         strip: &Strip<D>,
-        corner: [f64; C],
         columns: &Slanted<D>,
-        row: &mut [[f64; C]],
-        steps: &mut [Step<S, C>],
+        row: &mut [Weight],
+        steps: &mut [Step<S>],
     ) {
         let (start, end) = (strip.start, strip.end);
         let row = &mut row[..end + STRIP];
         let minus_scale = -self.scale();
-        let none = splat(simd, W::NONE);
+        let none = splat(simd, NONE);
         let mut cells = none;
         let mut diagonal = match strip.corner {
-            Some(first) => only(simd, first, corner, W::NONE),
+            Some(first) => only(simd, first),
             None => below(simd, none, row[start + STRIP - 2]),
         };
         let mut next = start;
@@ -132,9 +125,9 @@ impl<const D: usize> Grid<'_, D> {
             let stop = end.min(next | (STRETCH - 1));
             for d in next..=stop {
                 let differences = columns.differences(simd, &strip.x, d);
-                let factor = W::exp2(simd, Self::costs(simd, differences) * minus_scale);
+                let factor = exp2_parts(simd, Self::costs(simd, differences) * minus_scale);
                 let up = below(simd, cells, row[d + STRIP - 1]);
-                [_, cells] = W::cells(simd, [diagonal, up, cells], factor);
+                [_, cells] = sums([diagonal, up, cells], factor);
                 if RECORD {
                     steps[d - start] = Step { factor, cells };
                 }
@@ -142,34 +135,50 @@ impl<const D: usize> Grid<'_, D> {
                 row[d] = lane(cells, STRIP - 1);
             }
             // `diagonal` need not be normalised, because only the next step uses it.
-            cells = W::normalised(cells);
+            cells = normalised(cells);
             next = stop + 1;
         }
     }
 }
 
-struct Forward<'a, 'b, const D: usize> {
-    grid: &'a Grid<'b, D>,
-    recursion: Recursion,
-    value: &'a mut f64,
-}
+struct Forward<'a, 'b, const D: usize>(&'a Grid<'b, D>, &'a mut f64);
 
 impl<const D: usize> Kernel for Forward<'_, '_, D> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let columns = Slanted::of(self.grid.columns);
-        let total = match self.recursion {
-            Recursion::Plain { start } => {
-                self.grid
-                    .forward::<S, Plain, 1, false>(simd, start, &columns, &mut Vec::new())
-            }
-            _ => self
-                .grid
-                .forward::<S, Scaled, 2, false>(simd, 0.0, &columns, &mut Vec::new()),
-        };
-        *self.value = self.grid.value_of(total);
+        let Self(grid, value) = self;
+        let columns = Slanted::of(grid.columns);
+        *value = grid.value_of(grid.forward::<S, false>(simd, &columns, &mut Vec::new()));
     }
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use proptest::prelude::*;
+
+    use ddl_simd::{Dispatch, InstructionSet};
+
+    use crate::grid::Grid;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn every_instruction_set_gives_the_same_bits(
+            x in prop::collection::vec(prop::array::uniform3(-3.0..3.0_f64), 1..40),
+            y in prop::collection::vec(prop::array::uniform3(-3.0..3.0_f64), 1..40),
+            gamma in 0.01..10.0_f64,
+        ) {
+            let grid = Grid { rows: &x, columns: &y, gamma };
+            let results = |set| {
+                let dispatch = Dispatch::new(set).expect("available");
+                (grid.value_with(dispatch), grid.value_and_gradient_with(dispatch))
+            };
+            let portable = results(InstructionSet::Portable);
+            prop_assert_eq!(portable.0.to_bits(), portable.1.0.to_bits());
+            for set in InstructionSet::available() {
+                prop_assert_eq!(&results(set), &portable);
+            }
+        }
+    }
+}

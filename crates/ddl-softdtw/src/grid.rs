@@ -1,4 +1,4 @@
-//! The grid of all pairs of steps, cut into strips of eight rows, and the choice of the recursion on it.
+//! The grid of all pairs of steps, cut into strips of eight rows.
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use ddl_simd::Simd;
@@ -10,12 +10,6 @@ pub(crate) const STRIP: usize = 8;
 /// One number per row of a strip.
 pub(crate) type Lanes = [f64; STRIP];
 
-/// For plain numbers: R is at most 2^`LARGEST`, and t at most `LARGEST`.
-const LARGEST: f64 = 1018.0;
-/// log2(1 + √2), rounded up.
-const PATHS: f64 = 1.271_553_303_2;
-/// 1018 − 17 − 128: see [`crate::forward`].
-const ROOM: f64 = 873.0;
 /// Exponents are exact integers while the whole parts of all t along a path sum to no more than this.
 const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
 
@@ -24,17 +18,6 @@ pub(crate) struct Grid<'a, const D: usize> {
     pub(crate) rows: &'a [[f64; D]],
     pub(crate) columns: &'a [[f64; D]],
     pub(crate) gamma: f64,
-}
-
-/// How the sums over paths are represented.
-#[derive(Clone, Copy)]
-pub(crate) enum Recursion {
-    /// As plain numbers, from R(0, 0) = 2^`start`.
-    Plain { start: f64 },
-    /// As numbers with a separate exponent.
-    Scaled,
-    /// As logarithms: for γ = 0 and extreme ratios of cost to γ.
-    LogDomain,
 }
 
 /// Consecutive rows that advance together, one per lane, each one column behind the row above it. In step d of the
@@ -99,36 +82,10 @@ impl<const D: usize> Grid<'_, D> {
         std::f64::consts::LOG2_E / self.gamma
     }
 
-    /// The recursion whose range holds every R of this grid ([`crate::forward`]).
-    pub(crate) fn recursion(&self) -> Recursion {
+    /// Whether all exponents are exact integers. Otherwise, and for γ = 0, the recursion runs in the log domain.
+    pub(crate) fn is_exact(&self) -> bool {
         let (n, m) = (self.rows.len(), self.columns.len());
-        let bound = self.cost_bound() * self.scale();
-        let exact = bound * (n + m) as f64 <= EXACT;
-        if !exact {
-            return Recursion::LogDomain;
-        }
-        let paths = PATHS * (n + m + 2 * STRIP) as f64;
-        let start = (LARGEST - paths).floor();
-        let room = start - paths + ROOM;
-        // A bound of all t is cheaper to compute than their sum along a path, and often sufficient.
-        let fits =
-            bound <= LARGEST && (bound * n.max(m) as f64 <= room || self.cost_near_diagonal() * self.scale() <= room);
-        if fits {
-            Recursion::Plain { start }
-        } else {
-            Recursion::Scaled
-        }
-    }
-
-    /// The cost of the path next to the diagonal.
-    fn cost_near_diagonal(&self) -> f64 {
-        let (last_row, last_column) = (self.rows.len() - 1, self.columns.len() - 1);
-        let cells = last_row.max(last_column).max(1);
-        let cost_of = |cell| {
-            let (row, column) = (cell * last_row / cells, cell * last_column / cells);
-            cost(&self.rows[row], &self.columns[column])
-        };
-        (0..=cells).map(cost_of).sum()
+        self.cost_bound() * self.scale() * (n + m) as f64 <= EXACT
     }
 
     /// A bound of the cost of two steps: that of opposite corners of the box around all steps.

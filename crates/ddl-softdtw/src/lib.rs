@@ -9,9 +9,8 @@
 //! bit.
 //!
 //! Eight rows advance together along antidiagonals. The loops are compiled for each instruction set, and all give the
-//! same bits: products are fused everywhere, in software (slowly) on processors without the instruction. If costs are
-//! small and sequences short, R stays in the range of `f64` and needs no separate exponent; a bound of the costs
-//! decides this in advance. If costs may exceed about 10¹⁵ γ, or if γ = 0, the recursion runs in the log domain.
+//! same bits: products are fused everywhere, in software (slowly) on processors without the instruction. If costs may
+//! exceed about 10¹⁵ γ, or if γ = 0, the recursion runs in the log domain.
 //!
 //! ## How the search stays exact and fast
 //!
@@ -33,8 +32,8 @@
 //!
 //! ## Accuracy and cost
 //!
-//! Counted with callgrind, a pair of 7 / 8 steps takes 347 / 478 instructions with AVX2 and
-//! 1050 / 1330 with portable code; the compiled loop of AVX-512 has about 56 / 68.
+//! Counted with callgrind, a pair of 7 / 8 steps takes 347 / 478 instructions with AVX2 and 1050 / 1330 with portable
+//! code.
 
 mod backward;
 mod blocks;

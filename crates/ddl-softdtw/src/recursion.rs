@@ -11,8 +11,6 @@
 
 use ddl_simd::{Lanes, Simd, exp2_each};
 use fearless_simd::prelude::*;
-#[cfg(target_arch = "x86_64")]
-use fearless_simd::{Level, f32x16};
 
 use crate::blocks::Step;
 use crate::range::{COST_LIMIT, FUSED_FLOOR, UNFUSED_FLOOR};
@@ -92,74 +90,5 @@ fn similarities<S: Simd, const D: usize, const G: usize>(
         }
         exponents[g] = exponents[g].max(-COST_LIMIT);
     }
-    #[cfg(target_arch = "x86_64")]
-    if let Level::Avx512(avx512) = simd.level() {
-        let exponents = exponents.map(
-            #[inline(always)]
-            |exponent| f32x16::from_slice(avx512, exponent.as_slice()),
-        );
-        return exp2_of_512_bits(avx512, exponents).map(
-            #[inline(always)]
-            |power| S::f32s::from_slice(simd, power.as_slice()),
-        );
-    }
     exp2_each(simd, exponents)
 }
-
-/// 2^f on [0, 1], degree 5 (Remez exchange, 7.5e-8).
-#[cfg(target_arch = "x86_64")]
-#[expect(clippy::excessive_precision, reason = "digits as printed by the Remez exchange")]
-const POLYNOMIAL: [f32; 6] = [
-    0.999_999_9,
-    0.693_153_07,
-    0.240_153_62,
-    0.055_826_318,
-    0.008_989_34,
-    0.001_877_576_7,
-];
-
-/// [`exp2_each`] with an instruction for exponent − floor(exponent) and one for the power of two: a sixth less time for
-/// a search.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn exp2_of_512_bits<const G: usize>(
-    simd: fearless_simd::x86::Avx512,
-    exponents: [f32x16<fearless_simd::x86::Avx512>; G],
-) -> [f32x16<fearless_simd::x86::Avx512>; G] {
-    let mut fractions = exponents;
-    for g in 0..G {
-        fractions[g] = above_floor(simd, exponents[g]);
-    }
-    let [lower @ .., highest] = POLYNOMIAL;
-    let mut powers = [f32x16::splat(simd, highest); G];
-    for coefficient in lower.into_iter().rev() {
-        for g in 0..G {
-            powers[g] = powers[g].mul_add(fractions[g], coefficient);
-        }
-    }
-    for g in 0..G {
-        powers[g] = times_power_of_floor(simd, powers[g], exponents[g]);
-    }
-    powers
-}
-
-#[cfg(target_arch = "x86_64")]
-fearless_simd::kernel!(
-    #[inline(always)]
-    fn above_floor(simd: Avx512, a: f32x16<fearless_simd::x86::Avx512>) -> f32x16<fearless_simd::x86::Avx512> {
-        use std::arch::x86_64::{_MM_FROUND_FLOOR, _mm512_reduce_ps};
-        _mm512_reduce_ps::<{ _MM_FROUND_FLOOR }>(a.into()).simd_into(simd)
-    }
-);
-
-#[cfg(target_arch = "x86_64")]
-fearless_simd::kernel!(
-    #[inline(always)]
-    fn times_power_of_floor(
-        simd: Avx512,
-        power: f32x16<fearless_simd::x86::Avx512>,
-        exponent: f32x16<fearless_simd::x86::Avx512>,
-    ) -> f32x16<fearless_simd::x86::Avx512> {
-        std::arch::x86_64::_mm512_scalef_ps(power.into(), exponent.into()).simd_into(simd)
-    }
-);

@@ -1,5 +1,5 @@
-//! Values of a few lines: results (`report.json`, `moments.json`), the homography of a camera, the expert library and
-//! the goal estimator's parameters as JSON.
+//! Values of a few lines: results (`report.json`, `moments.json`), the homography of a camera, and the goal
+//! estimator's parameters as JSON.
 
 use ddl_data::{Homography, Observation, PedestrianId, PedestrianNames};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
@@ -62,11 +62,9 @@ pub(super) fn homography(bytes: &[u8]) {
     assert_eq!(with_commas.parse(), Ok(homography));
 }
 
-/// Reads bytes as a library, and as parameters for goals from a library of one pedestrian.
-pub(super) fn goal_library(bytes: &[u8]) {
-    let _ = json::<ExpertLibrary>(bytes);
-    let params = json::<GoalEstimatorParams>(bytes);
-    if let Some(params) = params {
+/// Reads bytes as parameters for goals from a library of one pedestrian.
+pub(super) fn goal_params(bytes: &[u8]) {
+    if let Some(params) = json::<GoalEstimatorParams>(bytes) {
         let track = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
         let library = ExpertLibrary::new(vec![track], 0.4).expect("a sound library");
         let _ = GoalEstimator::new(params, library);

@@ -116,14 +116,14 @@ pub(crate) fn inline(text: &str) -> Markup {
     }
 }
 
-pub(crate) fn identifier(words: &str) -> String {
+fn identifier(words: &str) -> String {
     let words = words
         .split(|c: char| !c.is_ascii_alphanumeric())
         .filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-").to_ascii_lowercase()
 }
 
-pub(crate) fn unused(name: String, used: &mut Vec<String>) -> String {
+fn unused(name: String, used: &mut Vec<String>) -> String {
     let before = used.iter().filter(|earlier| **earlier == name).count();
     used.push(name.clone());
     match before {

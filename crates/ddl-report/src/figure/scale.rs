@@ -11,7 +11,7 @@ pub(crate) struct Scale {
 
 impl Scale {
     /// From 0 to a round number not below `largest`, drawn from pixel to pixel.
-    pub(crate) fn from_zero(largest: f64, pixels: [f64; 2]) -> Self {
+    fn from_zero(largest: f64, pixels: [f64; 2]) -> Self {
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let step = round_step(largest / 4.0);
         Self {

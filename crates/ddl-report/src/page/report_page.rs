@@ -2,14 +2,13 @@
 
 use maud::{Markup, html};
 
-use crate::document::{ContentsEntry, identifier, inline, unused};
+use crate::document::{ContentsEntry, inline};
 use crate::error::ReportError;
-use crate::figure::drawing::Drawing;
 use crate::page::headline_chart::{ChartShape, headline_chart};
 use crate::page::moment_check::{self, Truth};
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
 use crate::page::{headline, moment_data, standing};
-use crate::report::{Report, watching_figures};
+use crate::report::Report;
 use crate::snapshot::ForecastSnapshot;
 
 /// The script of the rest of this page, run after those of the player.
@@ -87,17 +86,10 @@ impl<'a> Page<'a> {
     /// As [`to_html`](Self::to_html).
     pub fn figures(&self) -> Result<Vec<(String, String)>, ReportError> {
         self.check()?;
-        let mut figures: Vec<(String, Drawing)> = Vec::new();
-        if let Some(standing) = standing::standing(self.report) {
-            figures.push(("comparison".to_owned(), headline_chart(&standing, ChartShape::Wide)));
-        }
-        let mut used: Vec<String> = Vec::new();
-        let figures = figures
-            .into_iter()
-            .map(|(name, drawing)| (name, drawing.to_file("")))
-            .chain(watching_figures(self.report.rows()));
-        let named = |(name, text): (String, String)| (format!("{}.svg", unused(identifier(&name), &mut used)), text);
-        Ok(figures.map(named).collect())
+        let standing = standing::standing(self.report);
+        let chart = standing.map(|standing| headline_chart(&standing, ChartShape::Wide).to_file(""));
+        let named = |svg| ("comparison.svg".to_owned(), svg);
+        Ok(chart.map(named).into_iter().collect())
     }
 
     fn check(&self) -> Result<(), ReportError> {

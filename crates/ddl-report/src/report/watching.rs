@@ -1,19 +1,14 @@
 //! The effect of the memory of a recording over the time of observation: `online` forecasts beside those of the same
 //! model without the memory.
 
+use ddl_eval::Protocol;
 use ddl_eval::significance::BlockErrors;
-use ddl_eval::{Protocol, ResultRow};
 
 use crate::document::{Part, Table};
-use crate::figure::over_time::{OverTime, TimePanel};
 use crate::report::cells::or_nothing;
-use crate::report::group::{ResultGroup, TableLine, groups};
+use crate::report::group::{ResultGroup, TableLine};
 
 const QUARTERS: usize = 4;
-/// Number of blocks whose mean is a point of a curve: one minute.
-const SLIDING: usize = 3;
-/// Length of a block in minutes (20 s).
-const BLOCK_MINUTES: f64 = 1.0 / 3.0;
 
 const NOTE: &str = "By quarters of the time from the first to the last window of a recording. The brackets give the \
     change against the same model without the memory of the recording, on the same windows. The two numbers come from \
@@ -30,15 +25,6 @@ struct Watched {
 impl Watched {
     fn recording(&self) -> &str {
         &self.watching[0].recording
-    }
-
-    fn panel(&self) -> TimePanel {
-        let both = [&self.alone, &self.watching];
-        TimePanel {
-            name: self.recording().to_owned(),
-            notes: both.map(|blocks| format!("{:.3} m", mean(blocks.iter()))),
-            curves: both.map(|blocks| sliding(blocks)),
-        }
     }
 }
 
@@ -104,34 +90,6 @@ pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<
     ]
 }
 
-/// The first model of each online group with and without the memory of each recording: names and SVG files.
-pub(crate) fn figures(rows: &[ResultRow]) -> Vec<(String, String)> {
-    let groups = groups(rows);
-    let figure = |group: &ResultGroup<'_>| {
-        let models = watched(group, &groups);
-        let first = models.first()?.forecaster.clone();
-        let of_first = models.iter().filter(|watched| watched.forecaster == first);
-        let panels: Vec<TimePanel> = of_first.map(Watched::panel).collect();
-        let title = format!(
-            "{} over watching time (m, mean of a minute); {}, windows {}",
-            error(group.protocol),
-            group.convention,
-            group.window_rule
-        );
-        let drawn = OverTime {
-            title: &title,
-            keys: [
-                "without a memory of the recording",
-                "with what was seen in it until then",
-            ],
-            panels: &panels,
-        };
-        let name = format!("watching {} {} {}", group.protocol, group.convention, group.window_rule);
-        Some((name, drawn.to_file()))
-    };
-    groups.iter().filter_map(figure).collect()
-}
-
 fn error(protocol: Protocol) -> &'static str {
     if protocol.hypotheses() == 1 { "FDE" } else { "minFDE" }
 }
@@ -152,15 +110,6 @@ fn by_quarter(blocks: &[BlockErrors]) -> [Option<f64>; QUARTERS] {
         let of_quarter = || blocks.iter().filter(|block| quarter(block) == wanted as i64);
         of_quarter().next().map(|_| mean(of_quarter()))
     })
-}
-
-/// Minutes since the first window, and the mean minFDE (m) of the last [`SLIDING`] blocks.
-fn sliding(blocks: &[BlockErrors]) -> Vec<[f64; 2]> {
-    let first = blocks.first().map_or(0, |block| block.block);
-    let minutes = |block: &BlockErrors| (block.block - first + 1) as f64 * BLOCK_MINUTES;
-    let windows = blocks.windows(SLIDING.min(blocks.len()).max(1));
-    let point = |blocks: &[BlockErrors]| Some([minutes(blocks.last()?), mean(blocks.iter())]);
-    windows.filter_map(point).collect()
 }
 
 /// Mean minFDE over the pedestrians of the blocks, m.

@@ -7,7 +7,6 @@ mod wording;
 use ddl_data::{Convention, WindowRule};
 use ddl_eval::significance::BlockErrors;
 use ddl_eval::{CategoryScores, Conditions, MotionKind, Protocol, ResultRow, Scores, StabilityScores};
-use ddl_report::page::Page;
 use ddl_report::{Report, ReportError};
 
 fn scores(min_ade: f64) -> Scores {
@@ -375,13 +374,6 @@ fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
         "0.200 (-50.0 %)",
     ];
     assert_eq!(cells(line(section, "| DDL "))[1..], [&["eth"], &expected[..]].concat());
-    // A curve of both is drawn for every recording.
-    let report = Report::new("watching", alone.iter().cloned().chain(online.clone())).unwrap();
-    let figures = Page::new(&report).figures().unwrap();
-    let named = |name: &str| figures.iter().find(|(file, _)| file.starts_with(name));
-    let (_, drawn) = named("watching-online").unwrap();
-    assert_eq!(drawn.matches("curve c0").count(), 1 + 5);
-    assert!(drawn.contains("0.400 m") && !drawn.contains("NaN"));
     // The table is in the section of its protocol, and is left out if there are no results to compare with.
     assert!(!markdown(online).contains("watching time"));
     assert!(!markdown(alone).contains("watching time"));

@@ -1,58 +1,39 @@
 //! One step of training.
 
-use crate::Result;
-use crate::clock::{MeasuredTime, side_by_side};
+use crate::{Result, median};
 use ddl::data::{Dataset, Window, WindowRule};
 use ddl::network::{StarConfig, TrainingConfig};
 use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
 use ddl::{DeviceChoice, Variant};
+use rustix::time::ClockId;
 
-/// A step with this number of threads of the CPU; `None` for a card.
-pub(crate) fn measured(dataset: &Dataset, threads: Option<usize>, turns: usize) -> Result<String> {
+/// Prints the time of a step with one thread and with two.
+#[expect(clippy::print_stdout, reason = "the results")]
+pub(crate) fn measure(dataset: &Dataset, runs: usize) -> Result<()> {
     let training = TrainingConfig {
         epochs: 1_000_000, // never done
         ..TrainingConfig::published()
     };
-    let windows = one_batch(dataset, training.batch_pedestrians)?;
-    let scenes: Vec<usize> = windows.iter().map(Window::len).collect();
-    let star = StarConfig::published(Variant::Full);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(1))
-        .build()?;
-    let (clock, time) = match threads {
-        Some(1) => (MeasuredTime::Processor, "processor time"),
-        _ => (MeasuredTime::Wall, "wall-clock time"),
-    };
-    let device = match threads {
-        Some(_) => DeviceChoice::Cpu,
-        None => DeviceChoice::Cuda,
-    };
-    let [step] = pool.install(|| {
-        let device = ComputeDevice::open(device)?;
-        let mut trainer = Trainer::new(TorchNetwork::new(star, 1, device)?, windows, None, training)?;
-        let work: &mut dyn FnMut() -> Result<()> = &mut || Ok(trainer.step().map(drop)?);
-        side_by_side(clock, turns, [work])
-    })?;
-    let place = threads.map_or("on CUDA".into(), |threads| format!("threads: {threads}"));
-    Ok(format!(
-        "{} pedestrians in {} scenes, {place}: {step:.3} s ({time})",
-        scenes.iter().sum::<usize>(),
-        scenes.len(),
-    ))
-}
-
-/// One batch of training windows with few pedestrians each, as in most recordings; together they hold more than
-/// `pedestrians`.
-fn one_batch(dataset: &Dataset, pedestrians: usize) -> Result<Vec<Window>> {
+    // Windows with few pedestrians each, as in most recordings.
     let windows = dataset.fold("corridor")?.training_windows(WindowRule::Complete);
-    let mut batch = Vec::new();
-    let mut count = 0;
+    let mut pedestrians = 0;
+    let mut batch: Vec<Window> = Vec::new();
     for window in windows.into_iter().step_by(40) {
-        count += window.len();
-        batch.push(window);
-        if count > pedestrians {
-            return Ok(batch);
+        if pedestrians <= training.batch_pedestrians {
+            pedestrians += window.len();
+            batch.push(window);
         }
     }
-    Err("too few training windows".into())
+    for (threads, clock) in [(1, ClockId::ProcessCPUTime), (2, ClockId::Monotonic)] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let (scenes, batch, training) = (batch.len(), batch.clone(), training.clone());
+        let step = pool.install(|| {
+            let device = ComputeDevice::open(DeviceChoice::Cpu)?;
+            let network = TorchNetwork::new(StarConfig::published(Variant::Full), 1, device)?;
+            let mut trainer = Trainer::new(network, batch, None, training)?;
+            median(clock, runs, || Ok(trainer.step().map(drop)?))
+        })?;
+        println!("{pedestrians} pedestrians in {scenes} scenes, threads: {threads}: {step:.3} s ({clock:?})");
+    }
+    Ok(())
 }

@@ -17,7 +17,6 @@ use ddl_data::{HORIZON, Position, Window};
 use ddl_goal::GoalSet;
 use ddl_network::ForecastWindows;
 use ddl_network::weights::Weights;
-use ddl_scene::Futures;
 
 /// A trained model, ready to forecast.
 ///
@@ -135,15 +134,6 @@ impl Ddl {
     pub fn forecast_scenes_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
         certified::ensure_flow(self.config().star.variant)?;
         self.joint(windows, None)?.map(|walked| walked?.certified()).collect()
-    }
-
-    /// The joint futures of one window, from which answers about the scene are computed.
-    ///
-    /// # Errors
-    /// As [`forecast_all`](Forecaster::forecast_all).
-    pub fn forecast_scene(&self, window: &Window, given: Option<&GivenPlan>) -> Result<Futures, ForecastError> {
-        let mut forecasts = self.forecast_scenes(std::slice::from_ref(window), given)?;
-        Futures::new(window, forecasts.remove(0)).map_err(|error| ForecastError::model(NAME, error))
     }
 
     fn joint<'a>(
