@@ -8,7 +8,7 @@ use crate::kernel::columns::{load, store};
 use ddl_simd::{DEPTH, LANES, Lanes, Simd};
 use fearless_simd::prelude::*;
 pub(super) use rows::Decisions;
-use rows::{Four, USUAL, means};
+use rows::{Four, means};
 
 /// Added to the variance before the square root.
 const EPSILON: f32 = 1e-5;
@@ -67,26 +67,10 @@ impl AddNorm {
         normal: &mut Normal<'_>,
         y: &mut [f32],
     ) {
-        if self.width == USUAL * LANES {
-            self.forward_rows::<S, true>(simd, [x, t], decisions, normal, y);
-        } else {
-            self.forward_rows::<S, false>(simd, [x, t], decisions, normal, y);
-        }
-    }
-
-    #[inline(always)]
-    fn forward_rows<S: Simd, const FIXED: bool>(
-        &self,
-        simd: S,
-        [x, t]: [&[f32]; 2],
-        decisions: Option<(Decisions, usize)>,
-        normal: &mut Normal<'_>,
-        y: &mut [f32],
-    ) {
-        let width = self.fixed_width::<FIXED>();
+        let width = self.width;
         let rows = x.len() / width;
         assert!([0, rows].contains(&normal.scales.len()), "scales of the rows");
-        let mut four = Four::<FIXED>::new(self.inside.len());
+        let mut four = Four::new(self.inside.len());
         let whole = rows / DEPTH * DEPTH;
         for first in (0..whole).step_by(DEPTH) {
             self.forward_four(simd, [x, t], decisions, normal, y, (first, DEPTH), &mut four);
@@ -100,7 +84,7 @@ impl AddNorm {
     /// in registers.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "those of the rows, and which of them")]
-    fn forward_four<S: Simd, const FIXED: bool>(
+    fn forward_four<S: Simd>(
         &self,
         simd: S,
         [x, t]: [&[f32]; 2],
@@ -108,9 +92,9 @@ impl AddNorm {
         normal: &mut Normal<'_>,
         y: &mut [f32],
         (first, count): (usize, usize),
-        four: &mut Four<FIXED>,
+        four: &mut Four,
     ) {
-        let (width, vectors) = (self.fixed_width::<FIXED>(), four.vectors());
+        let (width, vectors) = (self.width, four.vectors());
         // For whole groups these slices have a constant length, and their rows need no check of bounds.
         let numbers_of_rows = first * width..first * width + count * width;
         let (x, t, y) = (
@@ -161,16 +145,13 @@ impl AddNorm {
 
     /// Subtracts the mean of each row. Returns 1 over the deviations.
     #[inline(always)]
-    fn centre<S: Simd, const FIXED: bool>(&self, simd: S, four: &mut Four<FIXED>) -> [f32; DEPTH] {
-        let (width, vectors) = (self.fixed_width::<FIXED>(), four.vectors());
+    fn centre<S: Simd>(&self, simd: S, four: &mut Four) -> [f32; DEPTH] {
+        let (width, vectors) = (self.width, four.vectors());
         let mean = simd.spread_each(means(simd, width, four.sums(simd)));
         for r in 0..DEPTH {
             for v in 0..vectors {
-                let mut centred = four.get(simd, r, v) - mean[r];
-                if !FIXED {
-                    centred *= simd.load(&self.inside[v].0);
-                }
-                four.set(simd, r, v, centred);
+                let centred = four.get(simd, r, v) - mean[r];
+                four.set(simd, r, v, centred * simd.load(&self.inside[v].0));
             }
         }
         // The variances of the four rows are in the first four lanes; roots of all lanes would take several times as
@@ -190,37 +171,14 @@ impl AddNorm {
     pub(super) fn backward<S: Simd>(
         &self,
         simd: S,
-        normal: [&[f32]; 2],
-        gy: &[f32],
-        decisions: Option<(Decisions, usize)>,
-        of_inputs: [&mut [f32]; 2],
-        of_weights: [&mut [f32]; 2],
-    ) {
-        if self.width == USUAL * LANES {
-            self.backward_rows::<S, true>(simd, normal, gy, decisions, of_inputs, of_weights);
-        } else {
-            self.backward_rows::<S, false>(simd, normal, gy, decisions, of_inputs, of_weights);
-        }
-    }
-
-    /// The width, a compile-time constant if it is the usual one.
-    #[inline(always)]
-    fn fixed_width<const FIXED: bool>(&self) -> usize {
-        if FIXED { USUAL * LANES } else { self.width }
-    }
-
-    #[inline(always)]
-    fn backward_rows<S: Simd, const FIXED: bool>(
-        &self,
-        simd: S,
         [numbers, scales]: [&[f32]; 2],
         gy: &[f32],
         decisions: Option<(Decisions, usize)>,
         [gx, gt]: [&mut [f32]; 2],
         [of_weight, of_bias]: [&mut [f32]; 2],
     ) {
-        let width = self.fixed_width::<FIXED>();
-        let new = || Four::<FIXED>::new(self.inside.len());
+        let width = self.width;
+        let new = || Four::new(self.inside.len());
         let (mut normal, mut gradient, mut sums) = (new(), new(), [new(), new()]);
         let vectors = normal.vectors();
         let rows = numbers.len() / width;

@@ -4,49 +4,28 @@ use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::{DEPTH, Floats, Lanes, Simd, Vectors};
 use fearless_simd::prelude::*;
 
-/// The usual width of a row, in vectors. Loops over it are unrolled.
-pub(super) const USUAL: usize = 2;
+/// Four rows, by vectors of columns.
+pub(super) struct Four(Vec<[Lanes; DEPTH]>);
 
-/// Four rows, of the usual width if `FIXED`, otherwise of any width.
-pub(super) struct Four<const FIXED: bool> {
-    usual: [[Lanes; USUAL]; DEPTH],
-    wide: Vec<[Lanes; DEPTH]>,
-}
-
-impl<const FIXED: bool> Four<FIXED> {
+impl Four {
     #[inline(always)]
     pub(super) fn new(vectors: usize) -> Self {
-        Self {
-            usual: [[Lanes::ZERO; USUAL]; DEPTH],
-            wide: if FIXED {
-                Vec::new()
-            } else {
-                vec![[Lanes::ZERO; DEPTH]; vectors]
-            },
-        }
+        Self(vec![[Lanes::ZERO; DEPTH]; vectors])
     }
 
     #[inline(always)]
     pub(super) fn vectors(&self) -> usize {
-        if FIXED { USUAL } else { self.wide.len() }
+        self.0.len()
     }
 
     #[inline(always)]
     pub(super) fn get<S: Simd>(&self, simd: S, row: usize, vector: usize) -> Floats<S> {
-        if FIXED {
-            simd.load(&self.usual[row][vector].0)
-        } else {
-            simd.load(&self.wide[vector][row].0)
-        }
+        simd.load(&self.0[vector][row].0)
     }
 
     #[inline(always)]
     pub(super) fn set<S: Simd>(&mut self, simd: S, row: usize, vector: usize, value: Floats<S>) {
-        if FIXED {
-            simd.store(value, &mut self.usual[row][vector].0);
-        } else {
-            simd.store(value, &mut self.wide[vector][row].0);
-        }
+        simd.store(value, &mut self.0[vector][row].0);
     }
 
     /// Partial sums over each row, one for each lane.
