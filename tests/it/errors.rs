@@ -71,7 +71,7 @@ training: benchmark --convention simulated
 CUDA: train --convention simulated --fold plaza --out new --device cuda
 CUDA: forecast --model run tracks.csv --device cuda
 CUDA: evaluate --model run --device cuda
-CUDA: goals tracks.csv --device cuda
+CUDA: goals --measure test --device cuda
 ";
     for case in cases.trim().lines() {
         let (what, line) = case.split_once(": ").unwrap();

@@ -1,7 +1,7 @@
 //! Every example of the crates that needs no libtorch runs and prints its result.
 
+use ddl_tests::example;
 use ddl_tests::place::Place;
-use ddl_tests::{example, own_tracks};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -10,20 +10,7 @@ const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
 /// it.
-const EXAMPLES: [(&str, &[&str]); 4] = [
-    (
-        "ddl-forecast forecast_csv",
-        &[
-            "pavement, frame 9: 3 pedestrians, 20 hypotheses each\n",
-            "pedestrian 3, now at (4.90, -0.30) m, tracked for 4 of 8 time steps",
-            "closer at every step",
-            "all 60 certificates hold\n",
-        ],
-    ),
-    (
-        "ddl-forecast forecast_csv mine.csv",
-        &["mine.csv, frame 80: 3 pedestrians"],
-    ),
+const EXAMPLES: [(&str, &[&str]); 2] = [
     ("ddl-forecast draw_forecast sample.csv 15 forecast.svg", &[]),
     ("ddl-data sample_recording", &[SAMPLE]),
 ];
@@ -38,7 +25,6 @@ fn parts(line: &str) -> (&str, &str, &str) {
 #[test]
 fn every_example_runs_and_prints_the_expected_texts() {
     let place = Place::empty();
-    place.write_tracks("mine.csv", &own_tracks::three_pedestrians(9));
     place.write("sample.csv", SAMPLE);
     for (line, promises) in EXAMPLES {
         let (package, name, arguments) = parts(line);

@@ -10,7 +10,7 @@ use ddl::{OWN_CLOCKS, ObservedTracks, RunConfig};
 use ddl_mcap::TrackTopic;
 use std::path::{Path, PathBuf};
 
-/// The tracks to read, and their units. A command that needs them requires `file`.
+/// The tracks to read, and their units.
 #[derive(Debug, Args)]
 pub(crate) struct TrackOptions {
     /// Tracks: csv with the header frame,pedestrian,x,y in metres (or time, in seconds, instead of frame); the rows of
@@ -19,24 +19,24 @@ pub(crate) struct TrackOptions {
     /// Also TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, recognised by extension and first
     /// lines; MCAP files and folders of rosbag2. `ddl forecast -` reads the lines of a live tracker.
     #[arg(value_name = "TRACKS")]
-    file: Option<PathBuf>,
+    file: PathBuf,
     #[command(flatten)]
     pub(crate) units: Units,
     /// Only pedestrians tracked for all 8 observed steps, 2.8 s
     ///
     /// By default, pedestrians with 2 or more rows are forecast too. Their motion is continued backwards before the
     /// first row; the column `unseen` counts such steps.
-    #[arg(long, requires = "file")]
+    #[arg(long)]
     whole: bool,
     /// Carry pedestrians on until their last row is so old; 0: only those with a row at the moment [default: 0.4, or
     /// the time between the last rows of a pedestrian if that is longer]
-    #[arg(long, requires = "file", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     max_age: Option<f64>,
     /// Time between two forecasts [default: 0, every frame; 0.4 in files where each pedestrian has its own clock]
-    #[arg(long, requires = "file", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     every: Option<f64>,
     /// Only the last frame with a forecast, instead of every frame
-    #[arg(long, requires = "file")]
+    #[arg(long)]
     last: bool,
 }
 
@@ -46,11 +46,7 @@ impl TrackOptions {
     }
 
     pub(crate) fn file(&self) -> &Path {
-        self.file.as_deref().unwrap_or(Path::new(""))
-    }
-
-    pub(crate) fn are_named(&self) -> bool {
-        self.file.is_some()
+        &self.file
     }
 
     /// Whether some pedestrians or frames are not to be forecast.

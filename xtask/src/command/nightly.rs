@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 
-use super::{c, docs, python, set_up, test, web};
+use super::{c, docs, python, release, set_up, test, web};
 use crate::browser;
 use crate::debian;
 use crate::libtorch::{self, Request};
@@ -35,8 +35,8 @@ enum Check {
     Cluster,
     /// Vector arithmetic with `AddressSanitizer`: it tests the `unsafe` code of `fearless_simd` under the kernels
     Sanitizer,
-    /// Every crate is built from its package, as for a registry
-    Packages,
+    /// Everything that a release consists of; each crate is built from its package
+    Release,
     /// The wheel for users, and its tests
     Wheel,
     /// The ROS 2 node against another DDS for a minute: nothing lost, latency
@@ -88,7 +88,7 @@ impl Check {
             Self::Mutants => mutants(workspace, words),
             Self::Cluster => cluster(workspace, words),
             Self::Sanitizer => sanitizer(workspace, words),
-            Self::Packages => packages(workspace),
+            Self::Release => release::dry_run(workspace),
             Self::Wheel => python::Arguments::default().run(workspace),
             Self::Node => python::check_node_for_long(workspace),
             Self::C => c::check_all(workspace),
@@ -150,12 +150,4 @@ fn sanitizer(workspace: &Workspace, words: &[String]) -> Result<()> {
         .env("RUSTFLAGS", "-Zsanitizer=address")
         .env_remove("RUSTUP_TOOLCHAIN");
     run(&mut rustup)
-}
-
-/// Packages are built without the workspace's profiles; a separate folder keeps the two builds from invalidating each
-/// other.
-fn packages(workspace: &Workspace) -> Result<()> {
-    set_up(workspace)?;
-    let publish = "publish --workspace --dry-run --allow-dirty --target-dir target/publish";
-    run(&mut workspace.cargo(publish.split(' ')))
 }

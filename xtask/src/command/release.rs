@@ -41,6 +41,11 @@ const STEPS: [Step; 7] = [
     ("checksums", checksums),
 ];
 
+/// Everything, without publishing it.
+pub(super) fn dry_run(workspace: &Workspace) -> Result<()> {
+    Arguments { dry_run: true }.run(workspace)
+}
+
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let notes = notes(&fs::read_to_string(workspace.path("CHANGELOG.md"))?, self.dry_run)?;
@@ -87,7 +92,8 @@ fn notes(changelog: &str, dry_run: bool) -> Result<String> {
     Ok(format!("# DDL {VERSION}, {section}"))
 }
 
-/// Every crate as its package, in the order of their dependencies; each is built from it.
+/// Every crate as its package, in the order of their dependencies; each is built from it, without the workspace's
+/// profiles, so in a folder of its own.
 fn crates(workspace: &Workspace, _: &Path) -> Result<()> {
     set_up(workspace)?;
     let publish = "publish --workspace --dry-run --allow-dirty --target-dir target/publish";

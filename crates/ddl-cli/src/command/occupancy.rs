@@ -13,7 +13,7 @@ use std::path::PathBuf;
 ///
 /// From the joint futures of every moment, or with --last of the last one. Only pedestrians who are forecast count.
 #[derive(Debug, Args)]
-#[command(mut_arg("file", |file| file.required(true)), mut_arg("every", |every| every.long("moments-every")))]
+#[command(mut_arg("every", |every| every.long("moments-every")))]
 #[command(after_help = "Examples:\n  \
         ddl occupancy tracks.csv --last --folder grids --format pgm\n  \
         ddl occupancy tracks.csv --last --cell 0.05 --every 0.1 --area=-5,-5,5,5 --folder grids\n  \

@@ -15,7 +15,6 @@ use std::path::PathBuf;
 ///
 /// From the joint futures of every moment. Only pedestrians who are forecast count.
 #[derive(Debug, Args)]
-#[command(mut_arg("file", |file| file.required(true)))]
 #[command(after_help = "Examples:\n  \
         ddl risk tracks.csv --plan robot.csv --last\n  \
         ddl risk tracks.csv --plan candidates.csv --within 0.8 --format jsonl\n  \

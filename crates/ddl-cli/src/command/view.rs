@@ -15,7 +15,6 @@ use std::path::{Path, PathBuf};
 /// Writes a self-contained page with a player of moments of the recording: all hypotheses with their weights, goals and
 /// certificates, and the true paths as far as they were observed.
 #[derive(Debug, Args)]
-#[command(mut_arg("file", |file| file.required(true)))]
 #[command(after_help = "Examples:\n  ddl view tracks.csv\n  \
                   ddl view tracks.csv --joint\n  \
                   ddl view camera.csv --fps 25 --homography H.txt --output lobby.html --no-open")]

@@ -12,7 +12,6 @@ use std::fs::File;
 
 /// Forecast the next 4.8 s of your own tracks
 #[derive(Debug, Args)]
-#[command(mut_arg("file", |file| file.required(true)))]
 #[command(after_help = "Examples:\n  \
         ddl forecast tracks.csv --output forecasts.csv\n  \
         ddl forecast camera.csv --fps 25 --homography H.txt --last\n  \
