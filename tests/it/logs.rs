@@ -1,5 +1,5 @@
-//! Logs of robots, `FILE.mcap`: the same three pedestrians as messages of four kinds, written by the packages `mcap` and
-//! `rosbags` of Python. More of them: `crates/ddl-python/tests/test_mcap.py`.
+//! Logs of robots, `FILE.mcap`: the same three pedestrians as messages of four kinds, written by the packages `mcap`
+//! and `rosbags` of Python. More of them: `crates/ddl-python/tests/test_mcap.py`.
 
 use ddl_tests::place::Place;
 use std::path::Path;

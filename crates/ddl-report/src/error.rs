@@ -34,18 +34,6 @@ pub enum ReportError {
         frame: i64,
         problem: String,
     },
-    #[error(
-        "training curve {index} (fold `{fold}`, variant `{variant}`, seed {seed}): epoch {epoch} follows {before}; \
-         epochs must ascend"
-    )]
-    Epochs {
-        index: usize,
-        fold: String,
-        variant: String,
-        seed: u64,
-        epoch: usize,
-        before: usize,
-    },
     #[error("the window holds {expected} pedestrians, the forecast {found}")]
     Pedestrians { expected: usize, found: usize },
 }

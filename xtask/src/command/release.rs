@@ -9,7 +9,8 @@ use anyhow::{Context, Result, bail, ensure};
 use clap::Args;
 
 use super::{c, set_up, web};
-use crate::cache::sha256;
+use crate::cache::{self, sha256};
+use crate::debian;
 use crate::process::{read, run};
 use crate::rust_target::RustTarget;
 use crate::tools::{Tools, cargo_tool};
@@ -18,6 +19,8 @@ use crate::workspace::Workspace;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The folder of the files of a release.
 const FILES: &str = "target/release-files";
+/// The target of this machine.
+const OWN: &str = "x86_64-unknown-linux-gnu";
 /// The oldest C library on which wheel and C library work: that of manylinux2014.
 const OLDEST_GLIBC: &str = "2.17";
 /// The packages whose parts are listed, each a file of the release.
@@ -102,7 +105,7 @@ fn crates(workspace: &Workspace, _: &Path) -> Result<()> {
 
 fn wheels(workspace: &Workspace, files: &Path) -> Result<()> {
     let tools = Tools::for_release(workspace)?;
-    for target in ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-gnu"] {
+    for target in [OWN, "aarch64-unknown-linux-gnu"] {
         let mut maturin = tools.program(workspace, "maturin");
         let options = "build --quiet --zig --profile wheel --compatibility manylinux2014 --manifest-path \
                        crates/ddl-python/Cargo.toml --target-dir target/portable --target";
@@ -117,15 +120,37 @@ fn wheels(workspace: &Workspace, files: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Lets a command that calls cargo find the target's standard library; this machine's own is there.
+/// Lets a command that calls cargo find the target's standard library; this machine's own is there. The flags replace
+/// the configured ones, which name the folder of libtorch on this machine.
 fn with_target(workspace: &Workspace, command: &mut Command, target: &'static str) -> Result<()> {
-    if !target.starts_with("x86_64-unknown-linux-gnu") {
+    if target != OWN {
         RustTarget::ensure(workspace, target)?.prepare(workspace, command)?;
+    }
+    command.env(
+        "RUSTFLAGS",
+        format!("--remap-path-prefix={}=.", workspace.root.display()),
+    );
+    Ok(())
+}
+
+/// What is published names no folder of this machine.
+fn check_paths(workspace: &Workspace, file: &Path) -> Result<()> {
+    let bytes = fs::read(file).with_context(|| file.display().to_string())?;
+    let here = [workspace.path("target"), cache::folder()?];
+    for folder in here.map(|folder| folder.into_os_string().into_encoded_bytes()) {
+        let is_named = bytes.windows(folder.len()).any(|part| part == folder);
+        ensure!(
+            !is_named,
+            "{} names {}",
+            file.display(),
+            String::from_utf8_lossy(&folder)
+        );
     }
     Ok(())
 }
 
 fn npm_package(workspace: &Workspace, files: &Path) -> Result<()> {
+    debian::ensure_program("npm", &["npm"])?;
     web::build(workspace)?;
     let mut npm = workspace.program("npm");
     run(npm
@@ -144,12 +169,13 @@ fn zigbuild(workspace: &Workspace, target: &'static str, glibc: &str, options: &
 }
 
 fn c_library(workspace: &Workspace, files: &Path) -> Result<()> {
-    let target = "x86_64-unknown-linux-gnu";
+    let target = OWN;
     let options = format!("--package ddl-c --profile {}", c::PROFILE);
     zigbuild(workspace, target, &format!(".{OLDEST_GLIBC}"), &options)?;
     let name = format!("ddl-c-{VERSION}-x86_64-linux");
     let prefix = workspace.path("target/portable").join(&name);
     c::install(workspace, &format!("portable/{target}/{}", c::PROFILE), &prefix)?;
+    check_paths(workspace, &prefix.join("lib/libddl.so"))?;
     pack(workspace, files, &name)
 }
 
@@ -161,6 +187,7 @@ fn program(workspace: &Workspace, files: &Path) -> Result<()> {
     fs::create_dir_all(&folder)?;
     let built = workspace.path("target/portable").join(target).join("release/ddl");
     fs::copy(&built, folder.join("ddl")).with_context(|| built.display().to_string())?;
+    check_paths(workspace, &built)?;
     run(workspace
         .program(folder.join("ddl"))
         .args(["forecast", "datasets/sample.csv", "--fps", "2.5", "--last"])
@@ -180,16 +207,24 @@ fn pack(workspace: &Workspace, files: &Path, name: &str) -> Result<()> {
     run(tar.arg("-C").arg(workspace.path("target/portable")).arg(name))
 }
 
-/// What each of the files is built from, as `CycloneDX`.
+/// What each of the files is built from, as `CycloneDX`. The program writes a list for every crate, beside its manifest.
 fn lists_of_parts(workspace: &Workspace, files: &Path) -> Result<()> {
     let cyclonedx = cargo_tool(workspace, "cargo-cyclonedx", "0.5.9")?;
-    for package in LISTED {
-        let manifest = format!("crates/{package}/Cargo.toml");
-        let mut list = workspace.program(&cyclonedx);
-        run(list.args(["cyclonedx", "--format", "json", "--manifest-path", &manifest]))?;
-        let made = workspace.path(&format!("crates/{package}/{package}.cdx.json"));
-        fs::rename(&made, files.join(format!("{package}-{VERSION}.cdx.json")))
-            .with_context(|| made.display().to_string())?;
+    run(workspace.program(&cyclonedx).args(["cyclonedx", "--format", "json"]))?;
+    let crates = fs::read_dir(workspace.path("crates"))?
+        .flatten()
+        .map(|entry| entry.path());
+    for folder in crates.chain(["xtask", "tests"].map(|name| workspace.path(name))) {
+        for list in of_extension(&folder, "json")? {
+            let name = list.file_name().unwrap_or_default().display().to_string();
+            match name.strip_suffix(".cdx.json") {
+                Some(package) if LISTED.contains(&package) => {
+                    fs::rename(&list, files.join(format!("{package}-{VERSION}.cdx.json"))).context(name)?;
+                }
+                Some(_) => fs::remove_file(&list).context(name)?,
+                None => {}
+            }
+        }
     }
     Ok(())
 }
@@ -211,21 +246,22 @@ fn of_extension(folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// Each program finds the key of its registry in the variable or file that it documents.
+/// Each program finds its key where it documents. What is published already is left alone.
 fn publish(workspace: &Workspace, files: &Path) -> Result<()> {
-    run(workspace
-        .program("git")
-        .args(["tag", "--annotate", &format!("v{VERSION}"), "--message", "Release"]))?;
-    run(&mut workspace.cargo(["publish", "--workspace"]))?;
+    let release_plz = cargo_tool(workspace, "release-plz", "0.4.3")?;
+    run(workspace.program(release_plz).arg("release"))?;
     let mut maturin = Tools::for_release(workspace)?.program(workspace, "maturin");
     run(maturin
         .args(["upload", "--skip-existing"])
         .args(of_extension(files, "whl")?))?;
-    let packages = of_extension(files, "tgz")?;
-    let [package] = &packages[..] else {
-        bail!("{} npm packages in {}", packages.len(), files.display());
-    };
-    run(workspace.program("npm").arg("publish").arg(package))?;
+    let this = format!("ddl-forecast@{VERSION}");
+    let published = read(workspace.program("npm").args(["view", &this, "version"])).unwrap_or_default();
+    if published.trim() != VERSION {
+        run(workspace
+            .program("npm")
+            .arg("publish")
+            .args(of_extension(files, "tgz")?))?;
+    }
     println!(
         "push the tag v{VERSION}, and attach the files of {} to it",
         files.display()
