@@ -23,7 +23,6 @@ mod section;
 mod significance;
 mod spread;
 mod summary;
-mod watching;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
 

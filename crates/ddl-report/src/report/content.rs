@@ -5,17 +5,11 @@ use ddl_eval::{Protocol, ResultRow};
 
 use crate::document::{Document, Part};
 use crate::report::group::{ResultGroup, groups};
-use crate::report::{
-    ablation, across_protocols, categories, deployable, metrics, published, section, significance, watching,
-};
+use crate::report::{ablation, across_protocols, categories, deployable, metrics, published, section, significance};
 
 pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     let groups = groups(rows);
-    let of_group = |group| {
-        let watching = watching::parts(group, &groups);
-        section::parts(group).into_iter().chain(watching)
-    };
-    let mut parts: Vec<Part> = groups.iter().flat_map(of_group).collect();
+    let mut parts: Vec<Part> = groups.iter().flat_map(section::parts).collect();
     if !groups.is_empty() {
         parts.push(Part::heading("How to read the tables"));
         let scenes = groups.iter().any(|group| group.protocol == Protocol::Joint);

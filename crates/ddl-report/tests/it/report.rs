@@ -348,33 +348,3 @@ fn own_recordings_have_a_row_each_and_one_for_all() {
     measured.blocks.pop();
     assert!(!markdown([measured]).contains("By recording"));
 }
-
-#[test]
-fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
-    let alone = five_folds(Protocol::Fair, 1, 0.2);
-    let mut online = five_folds(Protocol::Online, 1, 0.1);
-    for row in &mut online {
-        // The first three of ten blocks have no online results.
-        for block in &mut row.blocks[..3] {
-            block.min_fde = 4.0;
-        }
-        row.blocks.remove(9);
-        // A different description of the memory is still the same model.
-        row.conditions.recipe = Some("with a memory".to_owned());
-    }
-    let page = markdown(alone.iter().cloned().chain(online.clone()));
-    let (before, section) = page.split_once("### Error over watching time").unwrap();
-    assert!(before.contains("## Protocol `online`"));
-    // Nine blocks in quarters: 0 to 2, 3 and 4, 5 and 6, 7 and 8. Without observation ten blocks: 0 to 2, 3 and 4, 5 to
-    // 7, and 8 and 9.
-    let expected = [
-        "0.400 (+0.0 %)",
-        "0.200 (-50.0 %)",
-        "0.200 (-50.0 %)",
-        "0.200 (-50.0 %)",
-    ];
-    assert_eq!(cells(line(section, "| DDL "))[1..], [&["eth"], &expected[..]].concat());
-    // The table is in the section of its protocol, and is left out if there are no results to compare with.
-    assert!(!markdown(online).contains("watching time"));
-    assert!(!markdown(alone).contains("watching time"));
-}
