@@ -199,7 +199,7 @@ def check_player(opened, moments):
     check_pedestrian(opened, first, 0)
 
     # At the opening moment the speed is that of the last observed step.
-    pedestrian = first["pedestrians"][start]
+    pedestrian = first["pedestrians"][0]
     (x, y), speed = pedestrian["observed"][7], math.dist(*pedestrian["observed"][6:8]) / 0.4
     assert opened.time() == 7
     assert opened.text("#now-words") == f"observed at ({x:.2f}, {y:.2f}) m, {speed:.2f} m/s", opened.text("#now-words")

@@ -32,8 +32,8 @@ pub struct TrackTopic {
     pub(crate) name: String,
 }
 
-/// Reads the tracks of an MCAP file, or of the folder of a rosbag2 recording: those of the topic that is `asked` for or,
-/// without it, of the one topic that holds tracks. `keep` chooses the classes that are pedestrians.
+/// Reads the tracks of an MCAP file, or of the folder of a rosbag2 recording: those of the topic that is `asked` for
+/// or, without it, of the one topic that holds tracks. `keep` chooses the classes that are pedestrians.
 ///
 /// Messages have the time of their header, or that of the log where they have none. Of a file whose end is missing,
 /// the whole chunks are read.

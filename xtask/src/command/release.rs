@@ -207,7 +207,7 @@ fn pack(workspace: &Workspace, files: &Path, name: &str) -> Result<()> {
     run(tar.arg("-C").arg(workspace.path("target/portable")).arg(name))
 }
 
-/// What each of the files is built from, as `CycloneDX`. The program writes a list for every crate, beside its manifest.
+/// What each of the files is built from, as `CycloneDX`: the program writes a list beside the manifest of every crate.
 fn lists_of_parts(workspace: &Workspace, files: &Path) -> Result<()> {
     let cyclonedx = cargo_tool(workspace, "cargo-cyclonedx", "0.5.9")?;
     run(workspace.program(&cyclonedx).args(["cyclonedx", "--format", "json"]))?;
