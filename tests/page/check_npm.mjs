@@ -81,6 +81,14 @@ test("live forecasts are those of the program", () => {
   }
 });
 
+test("between two moments nothing is due", () => {
+  const place = new Live({ every: 0.4 });
+  for (let tick = 0; tick < 20; tick += 1) {
+    const { due, forecasts } = place.observe(0.1 * tick, Float64Array.of(7), Float64Array.of(0.1 * tick, 1));
+    assert.deepEqual([due, forecasts.length], [tick % 4 === 0, tick > 0 && tick % 4 === 0 ? 1 : 0]);
+  }
+});
+
 test("a memory grows, times are seconds, and a faulty frame changes nothing", () => {
   const place = new Live({ memory: true });
   for (let step = 0; step < 60; step += 1) {
@@ -93,6 +101,12 @@ test("a memory grows, times are seconds, and a faulty frame changes nothing", ()
   assert.throws(() => place.observe(30, Float64Array.of(7.5), Float64Array.of(0, 0)), /whole number/);
   assert.equal(place.observe(24, Float64Array.of(7), Float64Array.of(30, 1)).forecasts.length, 1);
   assert.throws(() => forecast("a.csv", Buffer.from("frame,pedestrian,x,y\n0,1,left,2\n")), /a\.csv, line 2, field 3/);
+  assert.throws(() => forecast("a.csv", Buffer.from("\x89MCAP0\r\n", "latin1")), /a\.csv: an MCAP file/);
+  for (const number of [NaN, Infinity]) assert.throws(() => new Live({ maxAge: number }), /maxAge is/);
+  assert.throws(() => forecast(SAMPLE, bytes, { region: [NaN] }), /region is/);
+  for (const options of [{ unit: "m" }, { homography: "1" }, { keep: "a=b" }, { last: true }, { moments: 1 }]) {
+    assert.throws(() => new Live(options), { message: /^\w+ is an option of files/ });
+  }
   assert.throws(() => forecast(SAMPLE, bytes, { fsp: 5 }), /unknown field `fsp`/);
   assert.throws(() => forecast(SAMPLE, bytes, { region: [2] }), /probability of a region/);
 });
@@ -110,4 +124,5 @@ test("joint futures of 25 people, in milliseconds", () => {
   }
   times.sort((a, b) => a - b);
   console.log(`25 people x 20 joint futures: median ${times[20].toFixed(0)} ms, least ${times[1].toFixed(0)} ms`);
+  assert.ok(times[20] < 300);
 });

@@ -104,6 +104,9 @@ typedef struct ddl_misfit {
 // A forecast of N pedestrians with K hypotheses of 12 positions, 0.4 s apart: arrays in C order, valid until the next
 // forecast of the same handle. An array that does not apply is null.
 typedef struct ddl_view {
+  // Whether this is the forecast of the last frame. False where none was due (`every`): the forecast is that of an
+  // earlier frame, but misfits, memory and warning are of the last.
+  bool due;
   // N; 0 where nobody can be forecast.
   size_t pedestrians;
   // K.
@@ -229,8 +232,9 @@ enum ddl_status ddl_live_new(const struct ddl_model *model,
                              struct ddl_live **live);
 
 // Adds a frame with all pedestrians that are seen, in any order, and forecasts into `forecast`: nobody (N = 0) where
-// nobody can be forecast. `at` is the time in seconds, or the number of the frame, later than the last. After an error
-// the tracks are unchanged: the frame can be given again without the fault. `request` may be null.
+// nobody can be forecast. Where none is due yet (`every`), the last forecast stays, with `due` false. `at` is the time
+// in seconds, or the number of the frame, later than the last. After an error the tracks are unchanged: the frame can
+// be given again without the fault. `request` may be null.
 enum ddl_status ddl_live_observe(const struct ddl_live *live,
                                  double at,
                                  const struct ddl_observation *observations,
@@ -252,7 +256,7 @@ void ddl_live_free(struct ddl_live*);
 const struct ddl_view *ddl_forecast_view(const struct ddl_forecast *forecast);
 
 // Radii (m) `[N][K][12]` of the discs around the hypotheses that together hold a pedestrian with the probability
-// `level`; NaN where there is no disc. Valid until the next call for radii of the handle.
+// `level`; NaN where there is no disc, null where there is nobody. Valid until the next call for radii of the handle.
 enum ddl_status ddl_forecast_radii(struct ddl_forecast *forecast, double level, const double **radii);
 
 // The risk that somebody comes within `within` metres of the edge of each plan, from joint futures. People see a plan

@@ -131,6 +131,8 @@ public:
 
     std::size_t pedestrians() const noexcept { return view().pedestrians; }
     std::size_t hypotheses() const noexcept { return view().hypotheses; }
+    /// Whether it is of the last frame; false where no forecast was due (`LiveOptions::every`).
+    bool due() const noexcept { return view().due; }
     std::int64_t id(std::size_t i) const noexcept { return view().ids[i]; }
     Array<Point> past(std::size_t i) const noexcept { return {view().past + i * observed, observed}; }
     /// 12 positions of hypothesis k of pedestrian i.
@@ -214,7 +216,7 @@ struct LiveOptions {
     bool whole = false;
     /// For so long (s) a pedestrian without a new row is carried on.
     std::optional<double> max_age{};
-    /// Seconds between two forecasts; 0 for one at every frame.
+    /// Seconds between two forecasts; 0 for one at every frame. Between them the last one stays (`due`).
     double every = 0.0;
 };
 

@@ -19,7 +19,7 @@ pub(crate) struct Answer {
     misfits: Vec<ddl_misfit>,
     warning: CString,
     pub(crate) view: ddl_view,
-    pub(crate) radii: Vec<f64>,
+    radii: Vec<f64>,
     risk_numbers: Packed,
     pub(crate) risks: ddl_risks,
     times: Vec<f64>,
@@ -69,7 +69,7 @@ impl Packed {
 }
 
 impl Answer {
-    /// Holds this forecast instead of the last; `None` where nobody can be forecast.
+    /// Holds this forecast, which is due, instead of the last; `None` where nobody can be forecast.
     pub(crate) fn hold(&mut self, held: Option<Held>, notes: &Notes<'_>) {
         self.ids.clear();
         self.certified.clear();
@@ -77,14 +77,6 @@ impl Answer {
         if let Some(Held { window, forecast, .. }) = &held {
             self.fill(window, forecast);
         }
-        let misfits = notes
-            .misfits
-            .iter()
-            .map(|misfit| (misfit.pedestrian.0, misfit.distance));
-        self.misfits.clear();
-        self.misfits
-            .extend(misfits.map(|(id, distance)| ddl_misfit { id, distance }));
-        self.warning = c_text(notes.warning.as_deref().unwrap_or_default());
         let [past, age, uncertainty, paths, weights, goals, familiarity, spread] = self.numbers.arrays();
         self.view = ddl_view {
             pedestrians: self.ids.len(),
@@ -99,12 +91,26 @@ impl Answer {
             certified: address(&self.certified),
             familiarity,
             spread,
-            misfits: address(&self.misfits),
-            misfit_count: self.misfits.len(),
-            remembered: notes.remembered,
-            warning: notes.warning.as_ref().map_or(ptr::null(), |_| self.warning.as_ptr()),
+            ..ddl_view::default()
         };
         self.held = held;
+        self.keep(notes);
+        self.view.due = true;
+    }
+
+    /// Keeps the last forecast after a frame at which none is due.
+    pub(crate) fn keep(&mut self, notes: &Notes<'_>) {
+        self.misfits.clear();
+        self.misfits.extend(notes.misfits.iter().map(|misfit| ddl_misfit {
+            id: misfit.pedestrian.0,
+            distance: misfit.distance,
+        }));
+        self.warning = c_text(notes.warning.as_deref().unwrap_or_default());
+        self.view.due = false;
+        self.view.misfits = address(&self.misfits);
+        self.view.misfit_count = self.misfits.len();
+        self.view.remembered = notes.remembered;
+        self.view.warning = notes.warning.as_ref().map_or(ptr::null(), |_| self.warning.as_ptr());
     }
 
     fn fill(&mut self, window: &Window, forecast: &Forecast) {
@@ -128,10 +134,9 @@ impl Answer {
     }
 
     /// Radii `[N][K][12]` of the discs around the hypotheses in the region of a level; NaN where there is none.
-    pub(crate) fn compute_radii(&mut self, level: f64) -> Result<(), Failure> {
-        self.radii.clear();
+    pub(crate) fn compute_radii(&mut self, level: f64) -> Result<*const f64, Failure> {
         let Some(Held { forecast, .. }) = &self.held else {
-            return Ok(());
+            return Ok(ptr::null());
         };
         let none = || Failure::invalid("the hypotheses of this model have no weights, and so no regions");
         let [low, high] = forecast.regions().ok_or_else(none)?.range();
@@ -142,8 +147,9 @@ impl Answer {
         }
         let steps = pairs(forecast).flat_map(|(i, k)| (0..HORIZON).map(move |t| (i, k, t)));
         let radius = |(i, k, t)| forecast.region_radius(i, k, t, level).unwrap_or(f64::NAN);
+        self.radii.clear();
         self.radii.extend(steps.map(radius));
-        Ok(())
+        Ok(address(&self.radii))
     }
 
     /// The risk of each plan, which pedestrians see or not.
@@ -196,14 +202,14 @@ impl Answer {
         };
         let area = area.map_err(Failure::invalid)?;
         let times = Occupancy::every(cells.every).map_err(Failure::invalid)?;
-        let mut probabilities = std::mem::take(&mut self.probabilities);
-        probabilities.clear();
-        self.probabilities = threads.run(|| {
+        threads.run(|| {
             let grids = futures
                 .occupancy(&area, &times, cells.radius)
                 .map_err(Failure::invalid)?;
-            probabilities.extend(grids.flat_map(|grid| grid.probabilities));
-            Ok(probabilities)
+            // After an error the last grids are still there.
+            self.probabilities.clear();
+            self.probabilities.extend(grids.flat_map(|grid| grid.probabilities));
+            Ok(())
         })?;
         self.times = times;
         let ([width, height], [x, y]) = (area.size(), area.origin());

@@ -121,8 +121,9 @@ pub unsafe extern "C" fn ddl_live_new(
 }
 
 /// Adds a frame with all pedestrians that are seen, in any order, and forecasts into `forecast`: nobody (N = 0) where
-/// nobody can be forecast. `at` is the time in seconds, or the number of the frame, later than the last. After an error
-/// the tracks are unchanged: the frame can be given again without the fault. `request` may be null.
+/// nobody can be forecast. Where none is due yet (`every`), the last forecast stays, with `due` false. `at` is the time
+/// in seconds, or the number of the frame, later than the last. After an error the tracks are unchanged: the frame can
+/// be given again without the fault. `request` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ddl_live_observe(
     live: Option<&ddl_live>,
@@ -170,7 +171,7 @@ pub extern "C" fn ddl_forecast_view(forecast: Option<&ddl_forecast>) -> Option<&
 }
 
 /// Radii (m) `[N][K][12]` of the discs around the hypotheses that together hold a pedestrian with the probability
-/// `level`; NaN where there is no disc. Valid until the next call for radii of the handle.
+/// `level`; NaN where there is no disc, null where there is nobody. Valid until the next call for radii of the handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn ddl_forecast_radii(
     forecast: Option<&mut ddl_forecast>,
@@ -179,8 +180,7 @@ pub extern "C" fn ddl_forecast_radii(
 ) -> ddl_status {
     guarded(|| {
         let (forecast, radii) = (&mut needed(forecast, "forecast")?.0, needed(radii, "radii")?);
-        forecast.compute_radii(level)?;
-        *radii = forecast.radii.as_ptr();
+        *radii = forecast.compute_radii(level)?;
         Ok(())
     })
 }

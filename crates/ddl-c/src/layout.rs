@@ -118,6 +118,9 @@ pub struct ddl_misfit {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ddl_view {
+    /// Whether this is the forecast of the last frame. False where none was due (`every`): the forecast is that of an
+    /// earlier frame, but misfits, memory and warning are of the last.
+    pub due: bool,
     /// N; 0 where nobody can be forecast.
     pub pedestrians: usize,
     /// K.

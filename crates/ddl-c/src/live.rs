@@ -43,7 +43,8 @@ impl Live {
         })
     }
 
-    /// Forecasts after this frame into `answer`, which holds nobody where nobody can be forecast.
+    /// Forecasts after this frame into `answer`, which holds nobody where nobody can be forecast, and keeps the last
+    /// forecast where none is due.
     pub(crate) fn observe(
         &self,
         at: f64,
@@ -78,7 +79,11 @@ impl Live {
             is_joint: matches!(request, Request::Joint(_)),
             threads: Arc::clone(&self.threads),
         });
-        answer.hold(held, &place.notes());
+        if place.live.tracks().is_moment() {
+            answer.hold(held, &place.notes());
+        } else {
+            answer.keep(&place.notes());
+        }
         Ok(())
     }
 

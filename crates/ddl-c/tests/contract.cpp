@@ -34,7 +34,7 @@ std::vector<ddl::Point> meeting() {
     return past;
 }
 
-std::vector<ddl::Observation> meeting_at(int t) {
+std::vector<ddl::Observation> meeting_at(double t) {
     return {{1, {0.5 * t, 0.0}}, {0, {9.0 - 0.5 * t, 0.8}}};
 }
 
@@ -106,8 +106,12 @@ void scenes_answer_plans(const ddl::Model& model) {
     // The first pedestrian stands in (3.5, 0) now: the cell (18, 8) begins there.
     REQUIRE(grids.probabilities[8 * 44 + 18] > 0.999F && grids.probabilities[0] == 0.0F);
     REQUIRE(grids.time[12] > 4.79 && grids.origin.x == -1.0);
+    const std::vector<float> before(grids.probabilities, grids.probabilities + 13 * 44 * 20);
+    cells.radius = -1.0;
+    REQUIRE(has(error_of([&] { forecast.occupancy(cells); }), "the radius of a body is -1"));
     cells.cell = 0.0;
     REQUIRE(has(error_of([&] { forecast.occupancy(cells); }), "the size of a cell is 0"));
+    REQUIRE(std::equal(before.begin(), before.end(), grids.probabilities));
 
     // Who follows the plan does so in every future.
     ddl::Forecast given;
@@ -183,10 +187,32 @@ void a_place_is_remembered(const ddl::Model& model) {
         live.clear();
         live.observe(0, {}, forecast);
         REQUIRE(forecast.pedestrians() == 0 && forecast.view().ids == nullptr);
+        REQUIRE(forecast.radii(0.9).data() == nullptr);
         live.close();
     }
     std::remove(file.c_str());
     std::remove((file + ".lock").c_str());
+}
+
+// Ten frames a second, and a forecast every 0.4 s.
+void a_forecast_stays_until_the_next(const ddl::Model& model) {
+    ddl::LiveOptions options;
+    options.every = 0.4;
+    ddl::Live live(model, options);
+    ddl::Forecast forecast;
+    ddl::Point last = {};
+    for (int tick = 0; tick < 40; ++tick) {
+        live.observe(0.1 * tick, meeting_at(0.25 * tick), forecast, ddl::joint());
+        REQUIRE(forecast.due() == (tick % 4 == 0));
+        REQUIRE(forecast.pedestrians() == (tick < 4 ? 0 : 2));
+        if (tick < 4) continue;
+        const ddl::Point end = forecast.path(0, 0)[11];
+        REQUIRE((distance(end, last) == 0.0) != forecast.due());
+        last = end;
+        REQUIRE(forecast.risks({{{0.0, last, 0.3}}}).size() == 1);
+    }
+    live.observe(8.0, {}, forecast);
+    REQUIRE(forecast.due() && forecast.pedestrians() == 0);
 }
 
 // Threads share a model, each with tracks of its own; threads of the model change nothing.
@@ -223,6 +249,7 @@ int main() {
     scenes_answer_plans(model);
     wrong_input_is_told(model);
     a_place_is_remembered(model);
+    a_forecast_stays_until_the_next(model);
     threads_agree();
     std::puts("contract kept");
 }

@@ -2,25 +2,38 @@
 
 const byId = (id) => document.getElementById(id);
 const embedded = (id) => byId(id).textContent;
-const worker = new Worker(URL.createObjectURL(new Blob([embedded("worker")], { type: "text/javascript" })));
 const many = (count, one, more) => `${count} ${count === 1 ? one : more}`;
 
 let file = null;
 let asked = 0;
+let worker = start();
 
-worker.onmessage = ({ data }) => {
+function start() {
+  const started = new Worker(URL.createObjectURL(new Blob([embedded("worker")], { type: "text/javascript" })));
+  started.onmessage = ({ data }) => answered(data);
+  started.onerror = (event) => fail(event.message || "this browser cannot run the forecaster: it needs WebAssembly with SIMD");
+  started.postMessage({ packed: embedded("forecaster").trim() });
+  return started;
+}
+
+function answered(data) {
   if (data.id === undefined) {
     if (data.error) fail(data.error);
     else if (!file) byId("state").textContent = "The model is loaded.";
     return;
   }
+  if (data.broken) {
+    worker.terminate();
+    worker = start();
+    // What waited for the old worker is asked again.
+    if (data.id !== asked) ask();
+  }
   // Only the answer to the last question counts.
   if (data.id !== asked) return;
-  if (data.error) fail(data.error);
+  if (data.broken) fail(`${file.name}: the file is too large for a tab, or the forecaster has a defect (${data.error})`);
+  else if (data.error) fail(data.error);
   else show(data.view, data.seconds);
-};
-worker.onerror = (event) => fail(event.message || "this browser cannot run the forecaster: it needs WebAssembly with SIMD");
-worker.postMessage({ packed: embedded("forecaster").trim() });
+}
 
 function fail(words) {
   byId("state").textContent = "";

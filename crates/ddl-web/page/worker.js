@@ -26,6 +26,8 @@ self.onmessage = async ({ data }) => {
     const view = wasm_bindgen.view(data.name, data.bytes, data.options);
     postMessage({ id: data.id, view, seconds: (performance.now() - start) / 1000 });
   } catch (error) {
-    postMessage({ id: data.id, error: error.message });
+    // After a trap, also of the stack, the module is in no state to go on.
+    const broken = error instanceof WebAssembly.RuntimeError || error instanceof RangeError;
+    postMessage({ id: data.id, error: error.message, broken });
   }
 };

@@ -1,18 +1,29 @@
 //! Values that pass between Rust and JavaScript, as JSON.
 
 use serde::de::DeserializeOwned;
+use serde_json::{Map, Value};
 use std::error::Error;
 use wasm_bindgen::prelude::*;
 
 pub(crate) type Failure = Box<dyn Error>;
 
-/// An object of JavaScript; the default of its type where there is none.
-pub(crate) fn read<T: DeserializeOwned + Default>(value: &JsValue) -> Result<T, Failure> {
+/// An object of JavaScript without fields `of_files`; the default of its type where there is none.
+pub(crate) fn read<T: DeserializeOwned + Default>(value: &JsValue, of_files: &[&str]) -> Result<T, Failure> {
     if value.is_undefined() || value.is_null() {
         return Ok(T::default());
     }
     let text = js_sys::JSON::stringify(value).map_err(|_| "the options are no plain object")?;
-    serde_json::from_str(&String::from(text)).map_err(|error| format!("options: {error}").into())
+    let wrong = |error| format!("options: {error}");
+    let given: Map<String, Value> = serde_json::from_str(&String::from(text)).map_err(wrong)?;
+    if let Some(name) = of_files.iter().find(|name| given.contains_key(**name)) {
+        return Err(format!("{name} is an option of files; Live has no use for it").into());
+    }
+    // JSON has null for NaN and infinite numbers.
+    let is_null = |value: &Value| value.is_null() || value.as_array().is_some_and(|all| all.contains(&Value::Null));
+    if let Some((name, _)) = given.iter().find(|(_, value)| is_null(value)) {
+        return Err(format!("{name} is null or no finite number; leave it out for the default").into());
+    }
+    Ok(serde_json::from_value(given.into()).map_err(wrong)?)
 }
 
 /// JSON as an object of JavaScript.
@@ -34,11 +45,11 @@ pub(crate) fn thrown(failure: &dyn Error) -> JsError {
 }
 
 /// `Answer` of `types.d.ts`, of JSON lines.
-pub(crate) fn answer(notes: &[String], lines: &str) -> Result<JsValue, Failure> {
+pub(crate) fn answer(notes: &[String], lines: &str, is_due: bool) -> Result<JsValue, Failure> {
     let notes = serde_json::to_string(notes)?;
     let forecasts: Vec<&str> = lines.lines().collect();
     parse(&format!(
-        "{{\"notes\":{notes},\"forecasts\":[{}]}}",
+        "{{\"due\":{is_due},\"notes\":{notes},\"forecasts\":[{}]}}",
         forecasts.join(",")
     ))
 }

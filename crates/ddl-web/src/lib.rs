@@ -34,7 +34,7 @@ pub fn forecast(
         let windows = tracks.windows(tracks.observed.windows.clone(), &options)?;
         let forecasts = tracks::forecasts(&windows, &options)?;
         let lines = tracks::lines(&windows, &forecasts, tracks.observed.clock, &options)?;
-        answer(&tracks.told, &lines)
+        answer(&tracks.told, &lines, true)
     })
 }
 
@@ -53,7 +53,7 @@ pub fn view(
 
 /// An answer by these options.
 fn asked(options: &JsValue, answer: impl FnOnce(Options) -> Result<JsValue, Failure>) -> Result<JsValue, JsError> {
-    exchange::read(options)
+    exchange::read(options, &[])
         .and_then(answer)
         .map_err(|failure| thrown(&*failure))
 }

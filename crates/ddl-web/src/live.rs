@@ -11,6 +11,8 @@ use wasm_bindgen::prelude::*;
 
 /// Microseconds in a second: times are counted in them.
 const MICROSECONDS: f64 = 1e6;
+/// Options that `LiveOptions` of `types.d.ts` leaves out.
+const OF_FILES: [&str; 6] = ["homography", "columns", "keep", "unit", "last", "moments"];
 
 /// Forecasts of one place, frame by frame.
 #[wasm_bindgen]
@@ -37,7 +39,7 @@ impl Live {
     }
 
     fn open(options: &JsValue) -> Result<Self, Failure> {
-        let options: Options = exchange::read(options)?;
+        let options: Options = exchange::read(options, &OF_FILES)?;
         let given = options.units()?.clock()?;
         let clock = given.unwrap_or_else(|| Clock::with_stamps(TimeUnit::Seconds));
         let tracks = options.windows_of(LiveTracks::with_clock(clock))?;
@@ -57,7 +59,7 @@ impl Live {
     }
 
     /// Adds a moment, in order of time: `ids` of its pedestrians, and `xy`, the x and y of each in turn, metres.
-    /// Returns the forecasts from it; none without pedestrians to forecast.
+    /// Returns the forecasts from it; none without pedestrians to forecast, or where none is due yet (`every`).
     ///
     /// # Errors
     /// A moment out of order, a position that is not finite, a repeated pedestrian; the state is then unchanged.
@@ -98,7 +100,7 @@ impl Live {
             None => String::new(),
             Some(now) => lines(&[now.window], &[now.forecast], clock, &self.options)?,
         };
-        answer(&notes, &text)
+        answer(&notes, &text, self.forecaster.tracks().is_moment())
     }
 
     /// Forgets all tracks, as when a tracker restarts; the memory is kept.

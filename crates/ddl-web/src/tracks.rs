@@ -16,6 +16,10 @@ pub(crate) struct Tracks {
 
 impl Tracks {
     pub(crate) fn read(name: &str, bytes: &[u8], options: &Options) -> Result<Self, Failure> {
+        if bytes.starts_with(b"\x89MCAP") {
+            let words = "an MCAP file is not read here; the program reads it: ddl forecast";
+            return Err(format!("{name}: {words} {name}").into());
+        }
         let (choice, units) = (options.choice()?, options.units()?);
         let format = Format::guess_with(Path::new(name), bytes, &choice)?;
         let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();

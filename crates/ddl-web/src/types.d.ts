@@ -32,7 +32,7 @@ export interface Options {
   moments?: number;
 }
 
-/** Options of `Live`; those of files are of no use there. */
+/** Options of `Live`; those of files are refused there. */
 export type LiveOptions = Pick<
   Options,
   "fps" | "dt" | "frameStep" | "whole" | "maxAge" | "every" | "joint" | "region" | "memory"
@@ -88,6 +88,8 @@ export interface SceneForecast {
 }
 
 export interface Answer {
+  /** False where `Live` has not forecast, because `every` seconds are not over: the last forecasts stay valid. */
+  due: boolean;
   /** What is assumed, left out or doubted, a line each. */
   notes: string[];
   /** `SceneForecast` with `joint`, else `PedestrianForecast`: the objects of `ddl forecast --format jsonl`. */
