@@ -154,7 +154,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
         write_file(path, |file| {
             let mut log = ForecastLog::new(file, topic.as_ref())?;
             if let Some(frame) = log.assumed_frame() {
-                tell(format_args!("note: no frame is named; {frame} is assumed"));
+                tell(format_args!("note: coordinate frame assumed: {frame}"));
             }
             for windows in parts {
                 let clock = observed.clock;
