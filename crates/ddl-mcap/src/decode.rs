@@ -54,9 +54,9 @@ pub(crate) fn decode(message: &Message<'_>) -> Result<Option<Decoded>, String> {
 fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decoded, String> {
     let message: Value = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
     let items = message[*list].as_array().ok_or(format!("there is no list `{list}`"))?;
-    let (occluded, items): (Vec<_>, Vec<_>) = items.iter().partition(|item| item["is_occluded"] == true);
-    let seen = items.into_iter().map(|item| {
-        let coordinate = |axis| item.pointer(position)?[axis].as_f64();
+    let frame_id = |of: &Value| of["header"]["frame_id"].as_str().unwrap_or_default().to_owned();
+    let seen = items.iter().map(|item| {
+        let coordinate = |axis| Some(item.pointer(position)?.get(axis)?.as_f64().unwrap_or(f64::NAN));
         let name = item
             .pointer(name)
             .filter(|name| name.is_number() || name.as_str().is_some_and(|it| !it.is_empty()));
@@ -70,25 +70,23 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
                 .unwrap_or_default()
                 .to_owned(),
             position: Point::from([coordinate("x")?, coordinate("y")?]),
+            frame_id: frame_id(item),
+            is_occluded: item["is_occluded"] == true,
         })
     });
-    let pedestrians: Option<_> = seen.collect();
+    let missing = format!("each of `{list}` needs {name}, and x and y of {position} (m)");
+    let pedestrians = seen.collect::<Option<_>>().ok_or(missing)?;
     let stamp = &message["header"]["stamp"];
     // As ROS 2, Foxglove and ROS 1 call them.
     let part = |names: &[&str]| names.iter().find_map(|name| stamp[name].as_i64()).unwrap_or(0);
     let (seconds, nanoseconds) = (part(&["sec", "secs"]), part(&["nanosec", "nsec", "nsecs"]));
     let microseconds = seconds.saturating_mul(1_000_000).saturating_add(nanoseconds / 1000);
-    let observed = Observed {
-        header: Header {
-            stamp: Time::of_microseconds(microseconds),
-            frame_id: message["header"]["frame_id"].as_str().unwrap_or_default().to_owned(),
-        },
-        pedestrians: pedestrians.ok_or(format!(
-            "each of `{list}` needs {name} and {position}, x and y in metres"
-        ))?,
-        occluded: occluded.len(),
+    let header = Header {
+        stamp: Time::of_microseconds(microseconds),
+        frame_id: frame_id(&message),
     };
-    Ok(((microseconds != 0).then_some(microseconds), observed))
+    let time = (microseconds != 0).then_some(microseconds);
+    Ok((time, Observed::new(header, pedestrians)))
 }
 
 /// JSON as `ddl forecast -` reads it, one or several lines of a moment. A frame is no time.
@@ -103,13 +101,9 @@ fn of_lines(bytes: &[u8]) -> Result<Option<Decoded>, String> {
     };
     let seen = frame.pedestrians.iter().map(|(id, position)| SeenPedestrian {
         name: frame.names.of(*id).to_string(),
-        class: String::new(),
         position: Point::from(*position),
+        ..SeenPedestrian::default()
     });
-    let observed = Observed {
-        header: Header::default(),
-        pedestrians: seen.collect(),
-        occluded: 0,
-    };
+    let observed = Observed::new(Header::default(), seen.collect());
     Ok(Some((reader.time_unit().map(|_| frame.number), observed)))
 }

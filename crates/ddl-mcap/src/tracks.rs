@@ -60,8 +60,9 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
                 let decoded = decode(&message);
                 let added = decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep));
                 added.map_err(|problem| {
+                    let hint = asked.map_or("; --topic reads another topic", |_| "");
                     let (topic, number) = (&channel.topic, message.sequence);
-                    LogError::at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))(problem)
+                    LogError::at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))(problem + hint)
                 })?;
             }
         }
@@ -160,8 +161,8 @@ impl Topic {
                 "positions in the frame {other:?}, but before in {frame_id:?}; record them in one"
             ));
         }
-        if observed.occluded > 0 {
-            *self.left_out.entry("occluded".to_owned()).or_default() += observed.occluded;
+        for (reason, count) in &observed.left_out {
+            *self.left_out.entry((*reason).to_owned()).or_default() += count;
         }
         observed.pedestrians.retain_mut(|seen| {
             seen.name = escaped(&seen.name);

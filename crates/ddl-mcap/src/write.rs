@@ -18,13 +18,13 @@ const FIXED_FRAME: &str = "map";
 
 /// A log that is written: all forecasts as `ddl_msgs/Forecasts` on the topic `/ddl/forecasts`, a picture of them
 /// (`visualization_msgs/MarkerArray`) on `/ddl/markers`, the likeliest path of each pedestrian (`nav_msgs/Path`) on
-/// `/ddl/paths/NAME`, and the messages with the tracks as they are. The log time of a message is its moment.
+/// `/ddl/paths`, and the messages with the tracks as they are. The log time of a message is its moment.
 ///
 /// Chunks are not compressed, as the crate `mcap` does that by libraries in C alone.
 #[expect(missing_debug_implementations, reason = "the writer of `mcap` has none")]
 pub struct ForecastLog<W: Write> {
     writer: Writer<NoSeek<W>>,
-    frame_id: String,
+    frame_id: Option<String>,
 }
 
 impl<W: Write> ForecastLog<W> {
@@ -36,7 +36,7 @@ impl<W: Write> ForecastLog<W> {
         let options = WriteOptions::new().profile("ros2").disable_seeking(true);
         let mut log = Self {
             writer: options.create(NoSeek::new(to))?,
-            frame_id: FIXED_FRAME.to_owned(),
+            frame_id: None,
         };
         for file in tracks.iter().flat_map(|tracks| &tracks.files) {
             let place = || LogError::at(file.display());
@@ -61,12 +61,17 @@ impl<W: Write> ForecastLog<W> {
                     };
                     log.writer.write_to_known_channel(&header, &message.data)?;
                     if !observed.header.frame_id.is_empty() {
-                        log.frame_id = observed.header.frame_id;
+                        log.frame_id = Some(observed.header.frame_id);
                     }
                 }
             }
         }
         Ok(log)
+    }
+
+    /// The coordinate frame of the forecasts, if it is assumed because the tracks name none.
+    pub fn assumed_frame(&self) -> Option<&'static str> {
+        self.frame_id.is_none().then_some(FIXED_FRAME)
     }
 
     /// Writes the forecast of a moment; `joint`: hypothesis k of all pedestrians is one future of the scene.
@@ -83,7 +88,7 @@ impl<W: Write> ForecastLog<W> {
         let stamp = Time::of_microseconds(microseconds);
         let header = &Header {
             stamp,
-            frame_id: self.frame_id.clone(),
+            frame_id: self.frame_id.as_deref().unwrap_or(FIXED_FRAME).to_owned(),
         };
         let moment = Moment {
             window,
@@ -94,8 +99,8 @@ impl<W: Write> ForecastLog<W> {
         let time = nanoseconds(microseconds)?;
         self.put("/ddl/forecasts", &moment.forecasts(), time)?;
         self.put("/ddl/markers", &moment.markers(), time)?;
-        for (i, path) in moment.likeliest_paths().iter().enumerate() {
-            self.put(&format!("/ddl/paths/{}", window.name(i)), path, time)?;
+        for path in moment.likeliest_paths() {
+            self.put("/ddl/paths", &path, time)?;
         }
         Ok(())
     }

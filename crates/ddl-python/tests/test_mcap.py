@@ -2,6 +2,7 @@
 
 import csv
 import io
+import math
 import shutil
 from pathlib import Path
 
@@ -43,7 +44,7 @@ def rows():
 
 
 def messages(store):
-    """The same as messages: nanoseconds and CDR."""
+    """The same, and a row without a place, as messages: nanoseconds and CDR."""
     kinds = store.types
     for t, people in rows():
         nanoseconds = round(t * 10) * 100_000_000
@@ -52,13 +53,13 @@ def messages(store):
         persons = [
             kinds["people_msgs/msg/Person"](
                 name=name,
-                position=point(x, y, 0.0),
+                position=point(x, y, math.nan),
                 velocity=point(0.0, 0.0, 0.0),
                 reliability=1.0,
                 tagnames=[],
                 tags=[],
             )
-            for name, x, y in people
+            for name, x, y in [*people, ("lost", math.nan, 0.0)]
         ]
         message = kinds[PEOPLE](kinds["std_msgs/msg/Header"](stamp, "odom"), persons)
         yield nanoseconds, bytes(store.serialize_cdr(message, PEOPLE))
@@ -103,12 +104,12 @@ def test_logs_give_the_forecasts_of_the_same_csv(program, folder, expected, log)
     done = run(program, "forecast", folder / log, check=True)
     assert table(done.stdout) == expected
     told = "topic /people (people_msgs/msg/People as cdr, 60 messages): times of the messages, positions in the frame"
-    assert told + ' "odom"' in done.stderr
+    assert told + ' "odom"; 60 rows left out: x or y is not finite' in done.stderr
 
 
 def test_every_message_of_a_written_file_is_decoded(program, folder, expected, store):
     out = folder / "out.mcap"
-    run(program, "forecast", folder / "bag", "-o", out, check=True)
+    done = run(program, "forecast", folder / "bag", "-o", out, check=True)
     counts, found = {}, {}
     with out.open("rb") as file:
         reader = make_reader(file, validate_crcs=True, decoder_factories=[DecoderFactory()])
@@ -140,6 +141,8 @@ def test_every_message_of_a_written_file_is_decoded(program, folder, expected, s
         assert weight == float(row["weight"])
         assert max(abs(x - float(row["x"])), abs(y - float(row["y"]))) < 5.1e-5  # the table is rounded
 
+    without = run(program, "forecast", folder / "tracks.csv", "-o", folder / "csv.mcap", check=True)
+    assert "coordinate frame assumed: map" in without.stderr and "frame assumed" not in done.stderr
     again = run(program, "forecast", out, "--topic", "/people", check=True)
     assert table(again.stdout) == expected
     with AnyReader([out]) as bag:
@@ -166,7 +169,9 @@ def test_what_cannot_be_read_is_named(program, folder, tmp_path):
                 writer.add_message(topic, k * 400_000_000, b'{"track": {"f": 1, "p": 1, "x": 0.5, "y": 2}}', 0, k)
         writer.add_message(topics[1], 4_000_000_000, b'{"track": {"f": 1, "p": 1, "x": "left", "y": 2}}', 0, 8)
         writer.finish()
-    assert "topic /b, message 8 at 4.000000 s: the message, line 1: track.x must be" in error("data", tmp_path)
+    wrong = error("data", tmp_path)
+    assert "topic /b, message 8 at 4.000000 s: the message, line 1: track.x must be" in wrong
+    assert "--topic reads another topic" in wrong
     assert "times of the log" in run(program, "data", tmp_path, "--topic", "/a", check=True).stderr
     whole = (folder / "ZSTD.mcap").read_bytes()
     (tmp_path / "cut.mcap").write_bytes(whole[: len(whole) // 2])

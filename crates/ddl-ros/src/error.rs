@@ -27,10 +27,4 @@ pub enum RosError {
         index: usize,
         id: &'static str,
     },
-    #[error("{type_name}: pedestrian {name} is at ({}); positions must be finite numbers of metres", .place.join(", "))]
-    Position {
-        type_name: &'static str,
-        name: String,
-        place: [String; 3],
-    },
 }

@@ -14,11 +14,39 @@ pub struct Observed {
     pub header: Header,
     /// In the order of the message.
     pub pedestrians: Vec<SeenPedestrian>,
-    /// Number of tracks that are left out because the tracker only guessed where they are (`is_occluded`).
-    pub occluded: usize,
+    /// Why rows are left out, and how many.
+    pub left_out: BTreeMap<&'static str, usize>,
 }
 
 impl Observed {
+    /// The pedestrians of a message without those that cannot be used, which are counted.
+    pub fn new(header: Header, pedestrians: Vec<SeenPedestrian>) -> Self {
+        let (frame, left_out) = (header.frame_id.clone(), BTreeMap::new());
+        let mut observed = Self {
+            header,
+            pedestrians,
+            left_out,
+        };
+        observed.keep("occluded", |seen| !seen.is_occluded);
+        let is_alike = |seen: &SeenPedestrian| seen.frame_id.is_empty() || seen.frame_id == frame;
+        observed.keep("in another frame", is_alike);
+        observed.keep_finite();
+        observed
+    }
+
+    /// Leaves out rows whose x or y is not finite.
+    pub fn keep_finite(&mut self) {
+        let is_finite = |seen: &SeenPedestrian| (seen.position.x + seen.position.y).is_finite();
+        self.keep("x or y is not finite", is_finite);
+    }
+
+    fn keep(&mut self, reason: &'static str, is_kept: impl Fn(&SeenPedestrian) -> bool) {
+        let left_out = self.pedestrians.extract_if(.., |seen| !is_kept(seen)).count();
+        if left_out > 0 {
+            *self.left_out.entry(reason).or_default() += left_out;
+        }
+    }
+
     /// Numbers and places (m) of the pedestrians, and the names of those that are not named by a number.
     pub fn numbered(&self, numbering: &mut Numbering) -> (Vec<(PedestrianId, Position)>, PedestrianNames) {
         let mut words = BTreeMap::new();
@@ -38,7 +66,7 @@ impl Observed {
 }
 
 /// One pedestrian of a message.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct SeenPedestrian {
     /// Its id or name; never empty.
     pub name: String,
@@ -46,6 +74,10 @@ pub struct SeenPedestrian {
     pub class: String,
     /// Position (m) in the frame of the header.
     pub position: Point,
+    /// The frame in a header of its own; mostly empty.
+    pub frame_id: String,
+    /// Whether the tracker only guessed where it is.
+    pub is_occluded: bool,
 }
 
 /// A message with tracks.
@@ -53,7 +85,7 @@ pub trait Tracks: Message {
     /// Its pedestrians.
     ///
     /// # Errors
-    /// The header has no time, a pedestrian has no id, a coordinate is not finite.
+    /// The header has no time, a pedestrian has no id.
     fn observed(self) -> Result<Observed, RosError>;
 }
 
@@ -83,6 +115,8 @@ impl Tracks for Detection3DArray {
                 name: detection.id,
                 class: likeliest.map(|hypothesis| hypothesis.class_id).unwrap_or_default(),
                 position: detection.bbox.center.position,
+                frame_id: detection.header.frame_id,
+                is_occluded: false,
             }
         });
         checked::<Self>(self.header, seen.collect(), ["detections", "id"])
@@ -93,8 +127,8 @@ impl Tracks for People {
     fn observed(self) -> Result<Observed, RosError> {
         let seen = self.people.into_iter().map(|person| SeenPedestrian {
             name: person.name,
-            class: String::new(),
             position: person.position,
+            ..SeenPedestrian::default()
         });
         checked::<Self>(self.header, seen.collect(), ["people", "name"])
     }
@@ -102,18 +136,13 @@ impl Tracks for People {
 
 impl Tracks for TrackedPersons {
     fn observed(self) -> Result<Observed, RosError> {
-        let all = self.tracks.len();
-        let tracks = self.tracks.into_iter().filter(|track| !track.is_occluded);
-        let seen: Vec<_> = tracks
-            .map(|track| SeenPedestrian {
-                name: track.track_id.to_string(),
-                class: String::new(),
-                position: track.pose.pose.position,
-            })
-            .collect();
-        let occluded = all - seen.len();
-        let observed = checked::<Self>(self.header, seen, ["tracks", "track_id"])?;
-        Ok(Observed { occluded, ..observed })
+        let seen = self.tracks.into_iter().map(|track| SeenPedestrian {
+            name: track.track_id.to_string(),
+            position: track.pose.pose.position,
+            is_occluded: track.is_occluded,
+            ..SeenPedestrian::default()
+        });
+        checked::<Self>(self.header, seen.collect(), ["tracks", "track_id"])
     }
 }
 
@@ -134,15 +163,5 @@ fn checked<M: Message>(
             id,
         });
     }
-    let coordinates = |seen: &SeenPedestrian| [seen.position.x, seen.position.y, seen.position.z];
-    let mut seen = pedestrians.iter();
-    if let Some(seen) = seen.find(|seen| !coordinates(seen).into_iter().all(f64::is_finite)) {
-        let (name, place) = (seen.name.clone(), coordinates(seen).map(|metres| metres.to_string()));
-        return Err(RosError::Position { type_name, name, place });
-    }
-    Ok(Observed {
-        header,
-        pedestrians,
-        occluded: 0,
-    })
+    Ok(Observed::new(header, pedestrians))
 }

@@ -142,6 +142,11 @@ fn header() -> Header {
 }
 
 #[test]
+fn the_package_of_ros_has_the_version_of_the_crate() {
+    assert!(include_str!("../package.xml").contains(concat!("<version>", env!("CARGO_PKG_VERSION"), "<")));
+}
+
+#[test]
 fn what_is_wrong_is_said() {
     let mut people = People {
         header: header(),
@@ -153,13 +158,6 @@ fn what_is_wrong_is_said() {
             .to_string()
     };
     assert!(error(&people).contains("people[0] has no name"), "{}", error(&people));
-    people.people[0].name = "a".to_owned();
-    people.people[0].position.x = f64::NAN;
-    assert!(
-        error(&people).contains("pedestrian a is at (NaN, 0, 0)"),
-        "{}",
-        error(&people)
-    );
     people.header = Header::default();
     assert!(error(&people).contains("set header.stamp"), "{}", error(&people));
     let longer = [write(&people).unwrap(), vec![0; 4]].concat();
@@ -172,5 +170,8 @@ fn what_is_wrong_is_said() {
     tracks.tracks[0].is_occluded = true;
     tracks.tracks[1].track_id = 8;
     let observed = read_tracks(TrackedPersons::TYPE, &write(&tracks).unwrap()).unwrap();
-    assert_eq!((observed.pedestrians[0].name.as_str(), observed.occluded), ("8", 1));
+    assert_eq!(
+        (observed.pedestrians[0].name.as_str(), observed.left_out.len()),
+        ("8", 1)
+    );
 }

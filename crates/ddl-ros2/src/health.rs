@@ -29,7 +29,9 @@ pub(crate) struct Health {
     pub(crate) skipped: u64,
     /// Messages that did not arrive.
     pub(crate) lost: u64,
-    pub(crate) occluded: u64,
+    /// Messages that were moved by a transform older than they are.
+    pub(crate) held: u64,
+    pub(crate) left_out: usize,
     pub(crate) doubtful: u64,
     /// Milliseconds from the arrival of a message to its forecast.
     latencies: VecDeque<f64>,
@@ -62,11 +64,13 @@ impl Health {
     /// Tells a fault, unless one was told that differs in numbers alone.
     pub(crate) fn fault(&mut self, error: &anyhow::Error) {
         self.last_error = format!("{error:#}");
-        let kind = self
-            .last_error
-            .replace(|letter: char| letter.is_ascii_digit() || letter == '.', "");
+        self.warn(&format!("{error:#}"));
+    }
+
+    pub(crate) fn warn(&mut self, text: &str) {
+        let kind = text.replace(|letter: char| letter.is_ascii_digit() || letter == '.', "");
         if self.told.len() < MOST_TOLD && self.told.insert(kind) {
-            tell(&format!("warning: {error:#} (told once; /diagnostics counts)"));
+            tell(&format!("warning: {text} (told once; /diagnostics counts)"));
         }
     }
 
@@ -100,7 +104,8 @@ impl Health {
             ("dropped", self.dropped.to_string()),
             ("skipped", self.skipped.to_string()),
             ("lost", self.lost.to_string()),
-            ("occluded tracks left out", self.occluded.to_string()),
+            ("transforms held", self.held.to_string()),
+            ("rows left out", self.left_out.to_string()),
             ("doubtful positions", self.doubtful.to_string()),
             ("latency p50 (ms)", format!("{:.2}", quantile(0.5))),
             ("latency p99 (ms)", format!("{:.2}", quantile(0.99))),

@@ -7,6 +7,7 @@ use crate::place::{Place, WindowForecast};
 use crate::tell;
 use crate::transforms::{Transforms, moved};
 use anyhow::Context as _;
+use ddl::data::TIME_STEP;
 use ddl::scene::{Area, Futures, Occupancy};
 use ddl_ros::msg::{Forecasts, Header};
 use ddl_ros::{Moment, Observed, Tracks, occupancy_grid};
@@ -83,11 +84,14 @@ impl Forecasting<'_> {
             self.health.lost += (number - last - 1).max(0) as u64;
         }
         let mut observed = message.observed()?;
-        self.health.occluded += observed.occluded as u64;
         if let Some(class) = &self.options.class {
             observed.pedestrians.retain(|seen| seen.class == *class);
         }
-        self.to_fixed(&mut observed)?;
+        self.move_into_fixed_frame(&mut observed)?;
+        for (reason, count) in &observed.left_out {
+            self.health.left_out += count;
+            self.health.warn(&format!("rows are left out: {reason}"));
+        }
         self.health.doubtful += self.place.observe(&observed)? as u64;
         self.arrived = info.received_timestamp();
         Ok(())
@@ -103,12 +107,14 @@ impl Forecasting<'_> {
         self.place.save()
     }
 
-    fn to_fixed(&self, observed: &mut Observed) -> anyhow::Result<()> {
+    fn move_into_fixed_frame(&mut self, observed: &mut Observed) -> anyhow::Result<()> {
         if self.options.transform.is_some() || observed.header.frame_id != self.options.frame {
-            let transform = self.transforms.to_fixed(&observed.header)?;
+            let (transform, is_held) = self.transforms.to_fixed(&observed.header)?;
+            self.health.held += u64::from(is_held);
             for seen in &mut observed.pedestrians {
                 seen.position = moved(&transform, seen.position);
             }
+            observed.keep_finite();
             observed.header.frame_id.clone_from(&self.options.frame);
         }
         Ok(())
@@ -159,13 +165,12 @@ impl Forecasting<'_> {
             }
         }
         let joint = self.options.joint;
-        publish(
-            &outputs.forecasts,
-            Forecasts {
-                header,
-                joint,
-                ..Forecasts::default()
-            },
-        )
+        let nobody = Forecasts {
+            header,
+            time_step: TIME_STEP,
+            joint,
+            pedestrians: Vec::new(),
+        };
+        publish(&outputs.forecasts, nobody)
     }
 }

@@ -69,7 +69,7 @@ pub(crate) struct Options {
     /// DDS domain
     #[arg(long, env = "ROS_DOMAIN_ID", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=232))]
     pub(crate) domain: u16,
-    /// Address of the network interface to use [default: all]
+    /// Address of the network interface to be found on [default: all]
     #[arg(long, value_name = "IP")]
     pub(crate) interface: Vec<IpAddr>,
     /// Threads that compute [default: as many as processor cores]

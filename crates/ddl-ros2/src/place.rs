@@ -24,8 +24,8 @@ pub(crate) struct Place {
     names: PedestrianNames,
     /// Microseconds of the last frame.
     last: Option<i64>,
-    /// The frame to forecast next.
-    moment: Option<Header>,
+    /// The frame to forecast next, and the names in it.
+    moment: Option<(Header, PedestrianNames)>,
 }
 
 /// The forecast of a frame, and the window that it is of.
@@ -85,7 +85,7 @@ impl Place {
         self.names = self.names.updated(&newer, |_| true);
         let tracks = self.scenes.tracks(None);
         if tracks.is_some_and(LiveTracks::is_moment) {
-            self.moment = Some(observed.header.clone());
+            self.moment = Some((observed.header.clone(), newer));
         }
         Ok(tracks.map_or(0, |tracks| tracks.misfits().len()))
     }
@@ -93,10 +93,11 @@ impl Place {
     /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; no
     /// forecast where nobody is observed well enough.
     pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<(Header, Option<WindowForecast>)>> {
-        let Some(header) = self.moment.take() else {
+        let Some((header, names)) = self.moment.take() else {
             return Ok(None);
         };
         let Some(window) = self.scenes.next_batch(LiveScenes::BATCH).windows.pop() else {
+            self.names = names;
             return Ok(Some((header, None)));
         };
         let forecast = if self.joint {

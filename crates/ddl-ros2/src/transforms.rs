@@ -1,12 +1,14 @@
 //! Where frames are in the fixed frame: the transforms of `/tf` and `/tf_static`, or one that is given.
 
 use anyhow::{Error, anyhow, bail, ensure};
+use ddl::data::LiveTracks;
 use ddl_ros::msg::{Header, Point, TfMessage};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
 use std::collections::{BTreeMap, VecDeque};
 
-/// Microseconds for which transforms are kept.
+/// Microseconds for which transforms are kept, and after which time that goes back begins anew, as for tracks.
 const KEPT: i64 = 10_000_000;
+const BACK: i64 = (1e6 * LiveTracks::LONGEST_GAP) as i64;
 
 /// The transforms known so far.
 #[derive(Debug)]
@@ -18,6 +20,9 @@ pub(crate) struct Transforms {
     /// Each frame in its parent.
     frames: BTreeMap<String, Link>,
 }
+
+/// A transform, and whether it is older than its moment.
+type Found = (Isometry3<f64>, bool);
 
 #[derive(Debug)]
 struct Link {
@@ -50,14 +55,17 @@ impl Transforms {
                 continue;
             };
             let pose = Isometry3::from_parts(Translation3::new(to.x, to.y, to.z), turned);
+            let stamp = stamped.header.stamp.microseconds();
+            let last = self.frames.get(frame).and_then(|link| link.poses.back());
+            if !is_static && last.is_some_and(|(last, _)| stamp < last - BACK) {
+                self.frames.retain(|_, link| link.is_static);
+            }
             let link = self.frames.entry(frame.to_owned()).or_insert_with(|| Link {
                 parent: String::new(),
                 is_static,
                 poses: VecDeque::new(),
             });
-            let stamp = stamped.header.stamp.microseconds();
-            let restarted = link.poses.back().is_some_and(|(last, _)| stamp < last - KEPT);
-            if is_static || restarted || link.parent != parent {
+            if is_static || link.parent != parent {
                 link.poses.clear();
             }
             (link.parent, link.is_static) = (parent.to_owned(), is_static);
@@ -70,10 +78,10 @@ impl Transforms {
     }
 
     /// The transform from the frame of a header to the fixed frame at its moment.
-    pub(crate) fn to_fixed(&self, header: &Header) -> anyhow::Result<Isometry3<f64>> {
+    pub(crate) fn to_fixed(&self, header: &Header) -> anyhow::Result<Found> {
         let (from, to) = (name(&header.frame_id), self.fixed_frame.as_str());
         if let Some(given) = self.given {
-            return Ok(given);
+            return Ok((given, false));
         }
         ensure!(
             !from.is_empty(),
@@ -83,7 +91,8 @@ impl Transforms {
         let others = self.upwards(to, time);
         for (ancestor, up) in self.upwards(from, time) {
             if let Some((_, other)) = others.iter().find(|(frame, _)| *frame == ancestor) {
-                return Ok(other.clone().map_err(Error::msg)?.inverse() * up.map_err(Error::msg)?);
+                let (other, up) = (other.clone().map_err(Error::msg)?, up.map_err(Error::msg)?);
+                return Ok((other.0.inverse() * up.0, other.1 || up.1));
             }
         }
         bail!(
@@ -93,17 +102,18 @@ impl Transforms {
     }
 
     /// The frame and its ancestors, with the transform from the frame to each.
-    fn upwards<'a>(&'a self, frame: &'a str, time: i64) -> Vec<(&'a str, Result<Isometry3<f64>, String>)> {
-        let mut chain = vec![(frame, Ok(Isometry3::identity()))];
+    fn upwards<'a>(&'a self, frame: &'a str, time: i64) -> Vec<(&'a str, Result<Found, String>)> {
+        let mut chain = vec![(frame, Ok((Isometry3::identity(), false)))];
         // A frame that is its own ancestor has no end.
         while chain.len() <= self.frames.len()
             && let Some((frame, up)) = chain.last()
             && let Some(link) = self.frames.get(*frame)
         {
             let of_link = |problem| format!("the transform from {frame} to {} {problem}", link.parent);
-            let up = up
-                .clone()
-                .and_then(|up| Ok(link.at(time, self.holds).map_err(of_link)? * up));
+            let up = up.clone().and_then(|(up, was_held)| {
+                let (pose, is_held) = link.at(time, self.holds).map_err(of_link)?;
+                Ok((pose * up, was_held || is_held))
+            });
             chain.push((&link.parent, up));
         }
         chain
@@ -111,7 +121,7 @@ impl Transforms {
 }
 
 impl Link {
-    fn at(&self, time: i64, holds: i64) -> Result<Isometry3<f64>, String> {
+    fn at(&self, time: i64, holds: i64) -> Result<Found, String> {
         let seconds = |microseconds: i64| microseconds as f64 / 1e6;
         let after = self
             .poses
@@ -122,7 +132,7 @@ impl Link {
         let Some((next, next_pose)) = self.poses.get(after) else {
             let age = time - stamp;
             if self.is_static || age <= holds {
-                return Ok(*pose);
+                return Ok((*pose, !self.is_static && age > 0));
             }
             return Err(format!(
                 "is {} s old; --transform-age allows {} s",
@@ -131,14 +141,15 @@ impl Link {
             ));
         };
         let share = (time - stamp) as f64 / (next - stamp) as f64;
-        Ok(pose.try_lerp_slerp(next_pose, share, 1e-9).unwrap_or(*pose))
+        Ok((pose.try_lerp_slerp(next_pose, share, 1e-9).unwrap_or(*pose), false))
     }
 }
 
-/// A place in the frame that a transform leads to.
+/// Where a place is on the ground of the frame that a transform leads to. Its height counts if the transform tilts.
 pub(crate) fn moved(transform: &Isometry3<f64>, Point { x, y, z }: Point) -> Point {
-    let [x, y, z] = (transform * Point3::new(x, y, z)).into();
-    Point { x, y, z }
+    let is_level = transform.rotation.i == 0.0 && transform.rotation.j == 0.0;
+    let moved = transform * Point3::new(x, y, if is_level { 0.0 } else { z });
+    [moved.x, moved.y].into()
 }
 
 /// Frames of ROS 1 begin with a slash.

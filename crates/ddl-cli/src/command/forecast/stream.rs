@@ -153,6 +153,9 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     if let Some(path) = log {
         write_file(path, |file| {
             let mut log = ForecastLog::new(file, topic.as_ref())?;
+            if let Some(frame) = log.assumed_frame() {
+                tell(format_args!("note: coordinate frame assumed: {frame}"));
+            }
             for windows in parts {
                 let clock = observed.clock;
                 let add = |moments: &[Moment<'_>], _: &mut StreamState| command.log(moments, &mut log);
