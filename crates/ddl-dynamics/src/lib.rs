@@ -63,7 +63,7 @@ pub use flow::{Flow, NaturalGradientFlow};
 pub use integrate::{Euler, Integrator, StableEuler};
 pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Violation};
 pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};
-pub use metric_source::{ArrivingSchedule, MetricSchedule, MetricSource};
+pub use metric_source::{MetricSchedule, MetricSource, arriving_schedule};
 pub use motion_bounds::{MotionBounds, StepTime};
 pub use real::Real;
 pub use rollout::{rollout, rollout_into};

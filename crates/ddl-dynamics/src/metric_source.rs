@@ -63,46 +63,25 @@ impl<T: Real, const D: usize> MetricSource<T, D> for MetricSchedule<T, D> {
     }
 }
 
-/// One metric per step, each adapted to the bounds of a motion that arrives at its goal with the last step
-/// ([`MotionBounds::shape`]). The bounds depend on the current position of the pedestrian.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ArrivingSchedule<T: Real> {
-    metrics: MetricSchedule<T, 2>,
+/// One metric per step of `time_step` seconds, step `k` shaped by `metrics[k]` within the bounds of a motion that arrives
+/// at its goal with the last step ([`MotionBounds::shape`]). The bounds depend on the current position.
+///
+/// # Errors
+/// [`DynamicsError::EmptySchedule`] if there is no metric.
+pub fn arriving_schedule<T: Real>(
+    metrics: Vec<CholeskyMetric<T, 2>>,
     attractor: Attractor<T, 2>,
     bounds: MotionBounds<T>,
     time_step: T,
-}
-
-impl<T: Real> ArrivingSchedule<T> {
-    /// The schedule that shapes step `k` by `metrics[k]` within `bounds` and arrives after the last step. Steps take
-    /// `time_step` seconds.
-    ///
-    /// # Errors
-    /// [`DynamicsError::EmptySchedule`] if there is no metric.
-    pub fn new(
-        metrics: Vec<CholeskyMetric<T, 2>>,
-        attractor: Attractor<T, 2>,
-        bounds: MotionBounds<T>,
-        time_step: T,
-    ) -> Result<Self, DynamicsError> {
-        Ok(Self {
-            metrics: MetricSchedule::new(metrics)?,
-            attractor,
-            bounds,
-            time_step,
-        })
-    }
-}
-
-impl<T: Real> MetricSource<T, 2> for ArrivingSchedule<T> {
-    fn metric(&self, state: &State<T, 2>) -> Result<CholeskyMetric<T, 2>, DynamicsError> {
-        let metric = self.metrics.metric(state)?;
+) -> Result<impl MetricSource<T, 2>, DynamicsError> {
+    let schedule = MetricSchedule::new(metrics)?;
+    Ok(move |state: &State<T, 2>| {
         let time = StepTime {
             done: state.step,
-            left: self.metrics.metrics.len().saturating_sub(state.step),
-            dt: self.time_step,
+            left: schedule.metrics.len().saturating_sub(state.step),
+            dt: time_step,
         };
-        let towards = self.attractor.goal() - state.position;
-        Ok(self.bounds.shape(&metric, &towards, time))
-    }
+        let towards = attractor.goal() - state.position;
+        Ok(bounds.shape(&schedule.metric(state)?, &towards, time))
+    })
 }

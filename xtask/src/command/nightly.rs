@@ -88,7 +88,7 @@ impl Check {
             Self::Mutants => mutants(workspace, words),
             Self::Cluster => cluster(workspace, words),
             Self::Sanitizer => sanitizer(workspace, words),
-            Self::Release => release::dry_run(workspace),
+            Self::Release => release::Arguments { dry_run: true }.run(workspace),
             Self::Wheel => python::Arguments::default().run(workspace),
             Self::Node => python::check_node_for_long(workspace),
             Self::C => c::check_all(workspace),
@@ -106,8 +106,8 @@ impl Check {
 fn faults(workspace: &Workspace, words: &[String]) -> Result<()> {
     set_up(workspace)?;
     let name = words.first().map_or("faults::", String::as_str);
-    // The test `program` makes cargo build the program. One after the other, because they measure time and memory.
-    let tests = "test --workspace --features ddl-cli/torch,ddl-tests/torch --test program --test it --test it_torch -- \
+    // One after the other, because they measure time and memory.
+    let tests = "test --workspace --features ddl-cli/torch,ddl-tests/torch --test it --test it_torch -- \
                  --test-threads 1 --nocapture";
     let mut tests = workspace.cargo(tests.split(' '));
     // With the variable, the tests use the full number of repetitions.

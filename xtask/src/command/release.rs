@@ -30,7 +30,7 @@ const LISTED: [&str; 4] = ["ddl-cli", "ddl-python", "ddl-c", "ddl-web"];
 pub(crate) struct Arguments {
     /// Build and check everything, and publish nothing
     #[arg(long)]
-    dry_run: bool,
+    pub(super) dry_run: bool,
 }
 
 type Step = (&'static str, fn(&Workspace, &Path) -> Result<()>);
@@ -43,11 +43,6 @@ const STEPS: [Step; 7] = [
     ("lists of parts", lists_of_parts),
     ("checksums", checksums),
 ];
-
-/// Everything, without publishing it.
-pub(super) fn dry_run(workspace: &Workspace) -> Result<()> {
-    Arguments { dry_run: true }.run(workspace)
-}
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {

@@ -1,8 +1,8 @@
 //! Motions within bounds: limited speed, nearer to the goal at every step, never past it, and on it with the last step.
 
 use ddl_dynamics::{
-    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Real,
-    StableEuler, StepTime, rollout,
+    Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Real, StableEuler, StepTime,
+    arriving_schedule, rollout,
 };
 use nalgebra::Vector2;
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -35,7 +35,7 @@ fn within<T: Real>(scene: &SceneDraw, (spare, share, dt, velocity, absolute): Bo
     let velocity = Vector2::from(velocity).map(T::rounded) * top_speed;
     let bounds = MotionBounds::new(top_speed, velocity, T::rounded(share))?;
     let bounds = if absolute { bounds.absolute() } else { bounds };
-    let schedule = ArrivingSchedule::new(scene.metrics(), attractor, bounds, dt).unwrap();
+    let schedule = arriving_schedule(scene.metrics(), attractor, bounds, dt).unwrap();
     let flow = NaturalGradientFlow::new(attractor, schedule);
     let path = rollout(&flow, &StableEuler, start, dt, METRICS).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
@@ -174,7 +174,7 @@ fn a_goal_out_of_reach_is_reported() {
     let attractor = Attractor::new(Vector2::new(20.0_f64, 0.0)).unwrap();
     let metrics = vec![CholeskyMetric::planar(5.0, 3.0, 1.0, 1e-8).unwrap(); 12];
     let bounds = MotionBounds::new(2.0, Vector2::zeros(), 1.0).unwrap();
-    let schedule = ArrivingSchedule::new(metrics, attractor, bounds, 0.4).unwrap();
+    let schedule = arriving_schedule(metrics, attractor, bounds, 0.4).unwrap();
     let flow = NaturalGradientFlow::new(attractor, schedule);
     let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 12).unwrap();
     assert!((path[12] - Vector2::new(9.6, 0.0)).norm() < 1e-12);

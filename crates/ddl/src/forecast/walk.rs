@@ -4,8 +4,8 @@
 
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{
-    ArrivingSchedule, Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSource, MotionBounds,
-    NaturalGradientFlow, StableEuler, State, rollout_into,
+    Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSource, MotionBounds, NaturalGradientFlow,
+    StableEuler, State, arriving_schedule, rollout_into,
 };
 use ddl_network::StepRule;
 use nalgebra::Vector2;
@@ -50,7 +50,7 @@ impl Approach {
     /// Integrates the approach with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
-        let schedule = ArrivingSchedule::new(self.metrics(factors)?, attractor, self.bounds, self.time_step)?;
+        let schedule = arriving_schedule(self.metrics(factors)?, attractor, self.bounds, self.time_step)?;
         // The rollout asks once for each step, at the positions that the certificate needs too.
         let metrics = RefCell::new(Vec::with_capacity(HORIZON));
         let source = |state: &State<f64, 2>| {
