@@ -63,8 +63,8 @@ impl<T: Real, const D: usize> MetricSource<T, D> for MetricSchedule<T, D> {
     }
 }
 
-/// One metric per step of `time_step` seconds, step `k` shaped by `metrics[k]` within the bounds of a motion that arrives
-/// at its goal with the last step ([`MotionBounds::shape`]). The bounds depend on the current position.
+/// One metric per step of `time_step` seconds, step `k` shaped by `metrics[k]` within the bounds of a motion that
+/// arrives at its goal with the last step ([`MotionBounds::shape`]). The bounds depend on the current position.
 ///
 /// # Errors
 /// [`DynamicsError::EmptySchedule`] if there is no metric.
