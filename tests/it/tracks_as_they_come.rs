@@ -181,7 +181,7 @@ fn files_and_options_override_the_rate_of_a_run() {
     let note = "note: the units are those of the run's training (--fps 50); give --fps, --dt, --frame-step or \
                 --homography if this is wrong\n";
     let run = |line: &str| place.run(&format!("{line} --model run --threads 1"));
-    for command in ["forecast", "goals", "view --no-open -o page.html"] {
+    for command in ["forecast", "view --no-open -o page.html"] {
         let with_units_of_run = run(&format!("{command} plain.csv --last"));
         assert!(with_units_of_run.stderr.contains(note), "{with_units_of_run:?}");
         let page = std::fs::read(place.at("page.html")).ok();

@@ -56,7 +56,11 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
     let items = message[*list].as_array().ok_or(format!("there is no list `{list}`"))?;
     let frame_id = |of: &Value| of["header"]["frame_id"].as_str().unwrap_or_default().to_owned();
     let seen = items.iter().map(|item| {
-        let coordinate = |axis| Some(item.pointer(position)?.get(axis)?.as_f64().unwrap_or(f64::NAN));
+        let is_occluded = item["is_occluded"] == true;
+        let coordinate = |axis| match item.pointer(position).and_then(|place| place.get(axis)) {
+            None if !is_occluded => None,
+            number => Some(number.and_then(Value::as_f64).unwrap_or(f64::NAN)),
+        };
         let name = item
             .pointer(name)
             .filter(|name| name.is_number() || name.as_str().is_some_and(|it| !it.is_empty()));
@@ -71,7 +75,7 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
                 .to_owned(),
             position: Point::from([coordinate("x")?, coordinate("y")?]),
             frame_id: frame_id(item),
-            is_occluded: item["is_occluded"] == true,
+            is_occluded,
         })
     });
     let missing = format!("each of `{list}` needs {name}, and x and y of {position} (m)");

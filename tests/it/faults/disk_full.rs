@@ -16,20 +16,18 @@ fn an_earlier_output_stays() {
     };
     for command in [
         "forecast --model run tracks.csv --last --output out/forecasts.csv",
-        "goals --model run tracks.csv --whole --last --output out/goals.csv",
         &format!("{EVALUATE} --out out/report"),
         "report run --out out/page",
     ] {
         let _ = place.ok(command);
     }
     place.write("out/packed", "an earlier model");
-    let files = ["forecasts.csv", "goals.csv", "packed"].map(|name| format!("out/{name}"));
+    let files = ["forecasts.csv", "packed"].map(|name| format!("out/{name}"));
     let before = files.clone().map(|name| place.read(&name));
     // Fills the disk completely.
     assert!(std::fs::write(out.join("filler"), vec![0; 8 << 20]).is_err());
     for (command, named) in [
         ("forecast --model run tracks.csv --output", "out/forecasts.csv"),
-        ("goals --model run tracks.csv --whole --output", "out/goals.csv"),
         ("pack --model run --out", "out/packed"),
         (&format!("{EVALUATE} --protocol single --out"), "out/report"),
     ] {
@@ -47,7 +45,6 @@ fn a_full_standard_output_is_an_error() {
     let place = Place::with_model();
     let commands = [
         "forecast --model run tracks.csv",
-        "goals --model run tracks.csv --whole",
         "info --model run",
         "info",
         "windows --convention simulated --fold corridor",

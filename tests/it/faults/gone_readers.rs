@@ -8,10 +8,9 @@ use ddl_tests::{nightly, processes};
 use std::os::unix::process::ExitStatusExt as _;
 use std::time::Duration;
 
-const COMMANDS: [&str; 9] = [
+const COMMANDS: [&str; 8] = [
     "forecast --model run tracks.csv",
     "forecast --model run tracks.csv --format jsonl",
-    "goals --model run tracks.csv",
     "windows --convention simulated --fold corridor",
     "info --model run",
     "info --json",

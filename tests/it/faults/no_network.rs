@@ -12,7 +12,6 @@ fn every_command_works_without_a_network() {
     let commands = [
         "forecast --model run tracks.csv --threads 1",
         "forecast tracks.csv --one --threads 1",
-        "goals --model run tracks.csv --threads 1",
         "windows --convention simulated --fold corridor",
         "info --model run",
         "info --json",

@@ -6,12 +6,11 @@ use ddl_tests::mount::Mount;
 use ddl_tests::place::Place;
 
 /// The first two commands create the folder of their outputs, the others do not.
-fn outputs(folder: &str) -> [String; 7] {
+fn outputs(folder: &str) -> [String; 6] {
     [
         format!("{EVALUATE} --out {folder}/report"),
         format!("report made --out {folder}/page"),
         format!("forecast --model run tracks.csv --output {folder}/forecasts.csv"),
-        format!("goals --model run tracks.csv --whole --output {folder}/goals.csv"),
         format!("pack --model run --out {folder}/packed"),
         format!("windows --convention simulated --fold corridor --output {folder}/windows.jsonl"),
         format!("forecast - --frame-step 1 --model run --output {folder}/live.csv"),
