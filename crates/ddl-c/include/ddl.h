@@ -49,7 +49,7 @@ typedef struct ddl_plan_point {
   double time;
   // Metres.
   struct ddl_point position;
-  // Radius of whoever follows the plan, metres.
+  // Radius of the robot or person that follows the plan, metres.
   double radius;
 } ddl_plan_point;
 
@@ -104,10 +104,10 @@ typedef struct ddl_misfit {
 // A forecast of N pedestrians with K hypotheses of 12 positions, 0.4 s apart: arrays in C order, valid until the next
 // forecast of the same handle. An array that does not apply is null.
 typedef struct ddl_view {
-  // Whether this is the forecast of the last frame. False where none was due (`every`): the forecast is that of an
-  // earlier frame, but misfits, memory and warning are of the last.
+  // Whether the forecast was made at the last frame. False between two forecasts (option `every`): it is then of an
+  // earlier frame; misfits, memory and warning are always of the last frame.
   bool due;
-  // N; 0 where nobody can be forecast.
+  // N, the number of pedestrians that are forecast; may be 0.
   size_t pedestrians;
   // K.
   size_t hypotheses;
@@ -231,10 +231,10 @@ enum ddl_status ddl_live_new(const struct ddl_model *model,
                              const struct ddl_live_options *options,
                              struct ddl_live **live);
 
-// Adds a frame with all pedestrians that are seen, in any order, and forecasts into `forecast`: nobody (N = 0) where
-// nobody can be forecast. Where none is due yet (`every`), the last forecast stays, with `due` false. `at` is the time
-// in seconds, or the number of the frame, later than the last. After an error the tracks are unchanged: the frame can
-// be given again without the fault. `request` may be null.
+// Adds a frame with all observed pedestrians, in any order, and writes the forecast to `forecast`. N is 0 if no
+// pedestrian can be forecast. Between two forecasts (option `every`), `forecast` keeps the previous one and `due` is
+// false. `at` is the time in seconds or the frame number; it must increase. After an error the tracks are unchanged,
+// and the corrected frame can be added. `request` may be null.
 enum ddl_status ddl_live_observe(const struct ddl_live *live,
                                  double at,
                                  const struct ddl_observation *observations,
@@ -255,8 +255,9 @@ void ddl_live_free(struct ddl_live*);
 // What was forecast last; null for null. Valid until the next forecast into the handle.
 const struct ddl_view *ddl_forecast_view(const struct ddl_forecast *forecast);
 
-// Radii (m) `[N][K][12]` of the discs around the hypotheses that together hold a pedestrian with the probability
-// `level`; NaN where there is no disc, null where there is nobody. Valid until the next call for radii of the handle.
+// Radii (m) `[N][K][12]` of the discs around the hypotheses that together contain a pedestrian with the probability
+// `level`. NaN: the hypothesis has no disc. Null: no pedestrian is forecast. Valid until the next call for radii of
+// the handle.
 enum ddl_status ddl_forecast_radii(struct ddl_forecast *forecast, double level, const double **radii);
 
 // The risk that somebody comes within `within` metres of the edge of each plan, from joint futures. People see a plan

@@ -69,7 +69,7 @@ impl Packed {
 }
 
 impl Answer {
-    /// Holds this forecast, which is due, instead of the last; `None` where nobody can be forecast.
+    /// Replaces the stored forecast by a new one; `None` if no pedestrian can be forecast.
     pub(crate) fn hold(&mut self, held: Option<Held>, notes: &Notes<'_>) {
         self.ids.clear();
         self.certified.clear();
@@ -98,7 +98,7 @@ impl Answer {
         self.view.due = true;
     }
 
-    /// Keeps the last forecast after a frame at which none is due.
+    /// Leaves the stored forecast as it is, and marks it as older than the last frame.
     pub(crate) fn keep(&mut self, notes: &Notes<'_>) {
         self.misfits.clear();
         self.misfits.extend(notes.misfits.iter().map(|misfit| ddl_misfit {

@@ -62,10 +62,10 @@ pub(crate) fn needed<T>(argument: Option<T>, name: &str) -> Result<T, Failure> {
     argument.ok_or_else(|| Failure::invalid(format!("{name} is null")))
 }
 
-/// `count` values; without any, the pointer may be null.
+/// The `count` values at this address; the pointer may be null if `count` is 0.
 ///
 /// # Safety
-/// `first` is null, or leads to `count` values that nobody changes during the call.
+/// `first` is null or points to `count` initialised values, which no thread writes during the call.
 pub(crate) unsafe fn values<'a, T>(first: *const T, count: usize, name: &str) -> Result<&'a [T], Failure> {
     if count == 0 {
         return Ok(&[]);
@@ -84,7 +84,7 @@ pub(crate) unsafe fn values<'a, T>(first: *const T, count: usize, name: &str) ->
 /// A text; `None` for null.
 ///
 /// # Safety
-/// `first` is null, or leads to text that ends with a zero byte.
+/// `first` is null or points to a string that ends with a zero byte.
 pub(crate) unsafe fn text<'a>(first: *const c_char, name: &str) -> Result<Option<&'a str>, Failure> {
     if first.is_null() {
         return Ok(None);

@@ -120,10 +120,10 @@ pub unsafe extern "C" fn ddl_live_new(
     })
 }
 
-/// Adds a frame with all pedestrians that are seen, in any order, and forecasts into `forecast`: nobody (N = 0) where
-/// nobody can be forecast. Where none is due yet (`every`), the last forecast stays, with `due` false. `at` is the time
-/// in seconds, or the number of the frame, later than the last. After an error the tracks are unchanged: the frame can
-/// be given again without the fault. `request` may be null.
+/// Adds a frame with all observed pedestrians, in any order, and writes the forecast to `forecast`. N is 0 if no
+/// pedestrian can be forecast. Between two forecasts (option `every`), `forecast` keeps the previous one and `due` is
+/// false. `at` is the time in seconds or the frame number; it must increase. After an error the tracks are unchanged,
+/// and the corrected frame can be added. `request` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ddl_live_observe(
     live: Option<&ddl_live>,
@@ -170,8 +170,9 @@ pub extern "C" fn ddl_forecast_view(forecast: Option<&ddl_forecast>) -> Option<&
     forecast.map(|forecast| &forecast.0.view)
 }
 
-/// Radii (m) `[N][K][12]` of the discs around the hypotheses that together hold a pedestrian with the probability
-/// `level`; NaN where there is no disc, null where there is nobody. Valid until the next call for radii of the handle.
+/// Radii (m) `[N][K][12]` of the discs around the hypotheses that together contain a pedestrian with the probability
+/// `level`. NaN: the hypothesis has no disc. Null: no pedestrian is forecast. Valid until the next call for radii of
+/// the handle.
 #[unsafe(no_mangle)]
 pub extern "C" fn ddl_forecast_radii(
     forecast: Option<&mut ddl_forecast>,

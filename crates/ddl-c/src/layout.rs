@@ -61,7 +61,7 @@ pub struct ddl_plan_point {
     pub time: f64,
     /// Metres.
     pub position: ddl_point,
-    /// Radius of whoever follows the plan, metres.
+    /// Radius of the robot or person that follows the plan, metres.
     pub radius: f64,
 }
 
@@ -118,10 +118,10 @@ pub struct ddl_misfit {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ddl_view {
-    /// Whether this is the forecast of the last frame. False where none was due (`every`): the forecast is that of an
-    /// earlier frame, but misfits, memory and warning are of the last.
+    /// Whether the forecast was made at the last frame. False between two forecasts (option `every`): it is then of an
+    /// earlier frame; misfits, memory and warning are always of the last frame.
     pub due: bool,
-    /// N; 0 where nobody can be forecast.
+    /// N, the number of pedestrians that are forecast; may be 0.
     pub pedestrians: usize,
     /// K.
     pub hypotheses: usize,

@@ -43,8 +43,8 @@ impl Live {
         })
     }
 
-    /// Forecasts after this frame into `answer`, which holds nobody where nobody can be forecast, and keeps the last
-    /// forecast where none is due.
+    /// Adds a frame and writes its forecast to `answer`, without pedestrians if none can be forecast. Between two
+    /// forecasts, `answer` keeps the previous one.
     pub(crate) fn observe(
         &self,
         at: f64,
