@@ -40,7 +40,8 @@ impl Observed {
         self.keep("x or y is not finite", is_finite);
     }
 
-    fn keep(&mut self, reason: &'static str, is_kept: impl Fn(&SeenPedestrian) -> bool) {
+    /// Leaves out the other rows, and counts them under this reason.
+    pub fn keep(&mut self, reason: &'static str, is_kept: impl Fn(&SeenPedestrian) -> bool) {
         let left_out = self.pedestrians.extract_if(.., |seen| !is_kept(seen)).count();
         if left_out > 0 {
             *self.left_out.entry(reason).or_default() += left_out;

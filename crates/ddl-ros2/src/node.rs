@@ -7,7 +7,7 @@ use crate::place::{Place, WindowForecast};
 use crate::tell;
 use crate::transforms::{Transforms, moved};
 use anyhow::Context as _;
-use ddl::data::TIME_STEP;
+use ddl::data::{TIME_STEP, is_vehicle};
 use ddl::scene::{Area, Futures, Occupancy};
 use ddl_ros::msg::{Forecasts, Header};
 use ddl_ros::{Moment, Observed, Tracks, occupancy_grid};
@@ -84,9 +84,10 @@ impl Forecasting<'_> {
             self.health.lost += (number - last - 1).max(0) as u64;
         }
         let mut observed = message.observed()?;
-        if let Some(class) = &self.options.class {
-            observed.pedestrians.retain(|seen| seen.class == *class);
-        }
+        observed.keep("no pedestrian by its class", |seen| match &self.options.class {
+            Some(class) => seen.class == *class,
+            None => !is_vehicle(&seen.class),
+        });
         self.move_into_fixed_frame(&mut observed)?;
         for (reason, count) in &observed.left_out {
             self.health.left_out += count;

@@ -21,7 +21,7 @@ pub(crate) struct Options {
     #[arg(long, default_value = Detection3DArray::TYPE)]
     #[arg(value_parser = PossibleValuesParser::new([Detection3DArray::TYPE, People::TYPE, TrackedPersons::TYPE]))]
     pub(crate) r#type: String,
-    /// Only detections whose likeliest class this is, such as person
+    /// Only detections whose likeliest class this is, such as person [default: all but vehicles]
     #[arg(long)]
     pub(crate) class: Option<String>,
     /// Name of the node; its topics begin with it

@@ -78,8 +78,9 @@ impl Live {
         } else {
             moment
         };
-        if let Some(number) = ids.iter().chain([&frame]).find(|number| number.fract() != 0.0) {
-            return Err(format!("{number} is not a whole number: ids and frames are").into());
+        let is_exact = |number: &&f64| number.fract() == 0.0 && number.abs() < 1.0 / f64::EPSILON;
+        if let Some(number) = ids.iter().chain([&frame]).find(|number| !is_exact(number)) {
+            return Err(format!("ids and frames must be whole numbers below 2^52, not {number}").into());
         }
         let frame = frame as i64;
         let seen = ids

@@ -63,9 +63,7 @@ impl Arguments {
             step(workspace, &files).with_context(|| format!("release: {name}"))?;
             eprintln!("release: {name}: {} s", start.elapsed().as_secs());
         }
-        for file in of_extension(&files, "")? {
-            println!("{} {}", fs::metadata(&file)?.len(), file.display());
-        }
+        println!("{}", files.display());
         if self.dry_run {
             return Ok(());
         }
@@ -90,12 +88,13 @@ fn notes(changelog: &str, dry_run: bool) -> Result<String> {
     Ok(format!("# DDL {VERSION}, {section}"))
 }
 
-/// Every crate as its package, in the order of their dependencies; each is built from it, without the workspace's
-/// profiles, so in a folder of its own.
+/// Every crate as its package, in the order of their dependencies; each is built from it. cargo keeps the packages of a
+/// folder by name and version alone, so each run has a new one.
 fn crates(workspace: &Workspace, _: &Path) -> Result<()> {
     set_up(workspace)?;
-    let publish = "publish --workspace --dry-run --allow-dirty --target-dir target/publish";
-    run(&mut workspace.cargo(publish.split(' ')))
+    let folder = tempfile::tempdir_in(workspace.path("target"))?;
+    let publish = "publish --workspace --dry-run --allow-dirty --target-dir";
+    run(workspace.cargo(publish.split(' ')).arg(folder.path()))
 }
 
 fn wheels(workspace: &Workspace, files: &Path) -> Result<()> {
