@@ -94,7 +94,8 @@ fn crates(workspace: &Workspace, _: &Path) -> Result<()> {
     set_up(workspace)?;
     let folder = tempfile::tempdir_in(workspace.path("target"))?;
     let publish = "publish --workspace --dry-run --allow-dirty --target-dir";
-    run(workspace.cargo(publish.split(' ')).arg(folder.path()))
+    let mut cargo = workspace.cargo(publish.split(' '));
+    run(cargo.arg(folder.path()).env("CARGO_PROFILE_DEV_DEBUG", "none"))
 }
 
 fn wheels(workspace: &Workspace, files: &Path) -> Result<()> {
