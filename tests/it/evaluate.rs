@@ -1,4 +1,4 @@
-//! `ddl evaluate`, `ddl goals --measure`, `ddl baselines`, `ddl report`: numbers from a model to the report page.
+//! `ddl evaluate`, `ddl goals --measure`, `ddl report`: numbers from a model to the report page.
 
 use ddl::data::{Convention, WindowRule};
 use ddl::eval::ResultRow;
@@ -132,18 +132,11 @@ fn a_number_goes_from_the_model_to_the_page() {
         assert!(hypotheses.all(|h| (h.certified, h.decreasing) == (Some(true), Some(true))));
     }
 
-    let baselines = "baselines --convention simulated --fold doorway --test-pedestrians 60 --commit 0123abc \
-                     --out baselines";
-    let printed = place.ok(baselines);
-    assert!(printed.contains("doorway") && printed.contains("constant velocity (last step)"));
-    let elsewhere = Report::load(&place.at("baselines/report.json")).unwrap();
-    assert!(elsewhere.rows().iter().all(|row| row.conditions.fold == "doorway"));
-
-    let printed_paths = place.ok("report run baselines --title Corridor --out pages");
+    let printed_paths = place.ok("report run --title Corridor --out pages");
     assert!(printed_paths.ends_with("report.html\n") && printed_paths.lines().count() == 1);
     let collected = Report::load(&place.at("pages/report.json")).unwrap();
     assert_eq!(collected.title(), "Corridor");
-    assert_eq!(collected.rows(), [report.rows(), elsewhere.rows()].concat());
+    assert_eq!(collected.rows(), report.rows());
     let markdown = place.text("pages/report.md");
     assert!(markdown.lines().next().unwrap().contains("simulated"));
     for text in [

@@ -53,7 +53,6 @@ fn commands_that_report_also_speak_json() {
         "pack --model run --out packed.safetensors",
         "evaluate --model run --protocol single --test-pedestrians 8 --threads 1",
         "report run --out report",
-        "baselines --convention simulated --fold plaza --protocol single --test-pedestrians 8",
         "goals --model run --measure test --threads 1",
     ] {
         let _ = place.json(&format!("{line} --json --progress none"));

@@ -2,9 +2,9 @@
 //! --benchmark`).
 
 use ddl::data::Convention;
-use ddl::eval::Conditions;
+use ddl::eval::{Conditions, baseline};
 use ddl::report::Report;
-use ddl::{BaselineRequest, Ddl, DeviceChoice, Protocol, Variant};
+use ddl::{Ddl, DeviceChoice, Protocol, Variant};
 use ddl_tests::place::{Place, json};
 use ddl_tests::{crowd, drawn_model, folder_contents};
 use serde_json::{Value, json};
@@ -16,13 +16,8 @@ const PACK: &str = "pack --benchmark . --out models";
 /// A finished benchmark of these folds, with a drawn model as each run, and invented results.
 fn benchmark(profile: &str, convention: Convention, folds: &[&str]) -> Place {
     let place = Place::empty();
-    let request = BaselineRequest {
-        folds: vec![crowd::FOLD.into()],
-        protocols: vec![Protocol::Fair],
-        test_pedestrians: Some(8),
-        commit: "0123abc".to_owned(),
-    };
-    let measured = ddl::measure_baselines(crowd::dataset(), &request);
+    let conditions = Conditions::new(convention, convention.headline_rule(), Protocol::Fair, crowd::FOLD, "");
+    let measured = baseline::measure(&conditions, &crowd::windows(4, 20), baseline::NOISE_SEED);
     let measured = measured.unwrap().remove(0);
     let mut tasks = Vec::new();
     for (&fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {

@@ -1,6 +1,5 @@
 //! The commands, one in each file, and the options they share.
 
-pub(crate) mod baselines;
 pub(crate) mod benchmark;
 pub(crate) mod data;
 pub(crate) mod evaluate;

@@ -1,6 +1,5 @@
 //! Evaluation of a model: scores, beside those of baselines and other models.
 
-pub(crate) mod baselines;
 pub(crate) mod comparison;
 pub(crate) mod evaluate;
 pub(crate) mod goals;

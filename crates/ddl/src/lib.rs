@@ -89,7 +89,6 @@ pub use windows::{split::Split, test_set::test_set_name};
 /// What the feature `report` adds.
 #[cfg(feature = "report")]
 mod with_report {
-    pub use crate::evaluation::baselines::{BaselineRequest, measure_baselines};
     pub use crate::evaluation::comparison::{BestOf20Errors, Comparison, compare_on_validation};
     pub use crate::evaluation::evaluate::{Evaluation, EvaluationProgress, EvaluationRequest, evaluate};
     pub use crate::evaluation::goals::{GoalErrors, GoalEvaluation, evaluate_goals};
