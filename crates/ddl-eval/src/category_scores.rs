@@ -1,4 +1,4 @@
-//! The metrics of the pedestrians of one kind of motion.
+//! The errors of the pedestrians of one kind of motion.
 
 use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
 use serde_json::Value;
@@ -7,7 +7,7 @@ use crate::category::MotionKind;
 use crate::pedestrian_scores::PedestrianScores;
 use crate::protocol::Protocol;
 
-/// The metrics of one kind of motion on the test windows of one fold: means over its pedestrians.
+/// The errors of one kind of motion on the test windows of one fold: means over its pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CategoryScores {
     /// The kind.
@@ -18,16 +18,6 @@ pub struct CategoryScores {
     pub min_ade: f64,
     /// minFDE over K, a separate minimum, metres.
     pub min_fde: f64,
-    /// FDE of the hypothesis with the smallest ADE, metres.
-    pub fde_at_min_ade: f64,
-    /// Share of pedestrians for whom every hypothesis ends more than 0.5 m from the true endpoint, in [0, 1].
-    pub miss_rate: f64,
-    /// ADE of the most likely hypothesis, metres.
-    pub most_likely_ade: f64,
-    /// FDE of the most likely hypothesis, metres.
-    pub most_likely_fde: f64,
-    /// Share of pedestrians whose representative forecast collides with another's, in [0, 1].
-    pub collision_rate: f64,
     /// ADE in the future of JADE, the best one for the whole scene, metres; `None` except under `joint`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint_ade: Option<f64>,
@@ -66,18 +56,12 @@ impl CategoryScores {
     fn mean(category: MotionKind, members: &[&PedestrianScores]) -> Self {
         let n = members.len() as f64;
         let mean = |metric: fn(&PedestrianScores) -> f64| members.iter().map(|w| metric(w)).sum::<f64>() / n;
-        let share = |holds: fn(&PedestrianScores) -> bool| members.iter().filter(|w| holds(w)).count() as f64 / n;
         let joint = |error: usize| members.iter().map(|w| Some(w.joint?[error])).sum::<Option<f64>>();
         Self {
             category,
             pedestrians: members.len(),
             min_ade: mean(|w| w.min_ade),
             min_fde: mean(|w| w.min_fde),
-            fde_at_min_ade: mean(|w| w.fde_at_min_ade),
-            miss_rate: share(|w| w.missed[0]),
-            most_likely_ade: mean(|w| w.most_likely_ade),
-            most_likely_fde: mean(|w| w.most_likely_fde),
-            collision_rate: share(|w| w.collides),
             joint_ade: joint(0).map(|sum| sum / n),
             joint_fde: joint(1).map(|sum| sum / n),
         }

@@ -71,11 +71,6 @@ fn turning(pedestrians: usize, min_ade: f64) -> Vec<CategoryScores> {
         pedestrians,
         min_ade,
         min_fde: 2.0 * min_ade,
-        fde_at_min_ade: 2.0 * min_ade,
-        miss_rate: 0.0,
-        most_likely_ade: min_ade,
-        most_likely_fde: min_ade,
-        collision_rate: 0.0,
         joint_ade: Some(3.0 * min_ade),
         joint_fde: Some(4.0 * min_ade),
     }]
