@@ -38,9 +38,9 @@ impl<T: Message + 'static> Inputs<T> {
         let of_transforms = reliable(DEPTH_OF_TRANSFORMS);
         let latched = of_transforms.clone().durability(Durability::TransientLocal);
         let mut inputs = Self {
-            tracks: subscribe(node, &options.topic, &qos)?,
-            moving: subscribe(node, "/tf", &of_transforms)?,
-            resting: subscribe(node, "/tf_static", &latched)?,
+            tracks: subscribe(node, &options.topic(&options.topic), &qos)?,
+            moving: subscribe(node, &options.topic("/tf"), &of_transforms)?,
+            resting: subscribe(node, &options.topic("/tf_static"), &latched)?,
             poll: mio1::Poll::new()?,
             events: mio1::Events::with_capacity(8),
         };
@@ -78,7 +78,7 @@ pub(crate) struct Outputs {
 
 impl Outputs {
     pub(crate) fn open(node: &mut Node, options: &Options) -> anyhow::Result<Self> {
-        let own = |name: &str| format!("/{}/{name}", options.name);
+        let own = |name: &str| options.topic(&format!("~/{name}"));
         let mut grids = Vec::new();
         for time in &options.grids {
             // 0.8 s ahead: t0_8.
@@ -90,7 +90,7 @@ impl Outputs {
             paths: advertise(node, &own("paths"), DEPTH_OF_PATHS)?,
             markers: advertise(node, &own("markers"), DEPTH)?,
             grids,
-            diagnostics: advertise(node, "/diagnostics", DEPTH)?,
+            diagnostics: advertise(node, &options.topic("/diagnostics"), DEPTH)?,
         })
     }
 }
@@ -101,7 +101,7 @@ pub(crate) fn open(options: &Options) -> anyhow::Result<Node> {
         participant = participant.with_only_networks(options.interface.iter().copied());
     }
     let context = Context::from_domain_participant(participant.build()?)?;
-    let name = NodeName::new("/", &options.name)?;
+    let name = NodeName::new(&options.namespace, &options.name)?;
     Ok(context.new_node(name, NodeOptions::new())?)
 }
 

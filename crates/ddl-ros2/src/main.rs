@@ -5,23 +5,21 @@ mod health;
 mod node;
 mod options;
 mod place;
+mod ros_arguments;
 mod transforms;
 
-use clap::Parser as _;
 use ddl_ros::Message as _;
 use ddl_ros::msg::{Detection3DArray, People, TrackedPersons};
-use options::Options;
 use std::io::Write as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let options = Options::parse();
-    let ended = match options.r#type.as_str() {
-        People::TYPE => node::run::<People>(&options),
-        TrackedPersons::TYPE => node::run::<TrackedPersons>(&options),
-        _ => node::run::<Detection3DArray>(&options),
+    let ended = |options: &options::Options| match options.r#type.as_str() {
+        People::TYPE => node::run::<People>(options),
+        TrackedPersons::TYPE => node::run::<TrackedPersons>(options),
+        _ => node::run::<Detection3DArray>(options),
     };
-    match ended {
+    match ros_arguments::parse(std::env::args_os()).and_then(|options| ended(&options)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             tell(&format!("error: {error:#}"));

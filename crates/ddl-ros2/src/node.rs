@@ -36,8 +36,12 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
     let outputs = Outputs::open(&mut node, options)?;
     let mut inputs = Inputs::<T>::open(&mut node, options)?;
     tell(&format!(
-        "{} ({}) to /{}/forecasts, in frame {}, domain {}",
-        options.topic, options.r#type, options.name, options.frame, options.domain
+        "{} ({}) to {}, in frame {}, domain {}",
+        options.topic(&options.topic),
+        options.r#type,
+        options.topic("~/forecasts"),
+        options.frame,
+        options.domain
     ));
     while !stopped.load(Ordering::Relaxed) {
         inputs.wait()?;

@@ -10,11 +10,14 @@ use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use std::net::IpAddr;
 use std::path::PathBuf;
 
+/// The name of a node that has none.
+pub(crate) const NAME: &str = "ddl";
+
 /// Forecast pedestrians in ROS 2: subscribe to tracks, publish where they will be in the next 4.8 s
 #[derive(Debug, Parser)]
 #[command(name = "ddl-ros2", version, allow_negative_numbers = true)]
 pub(crate) struct Options {
-    /// Topic of the tracks
+    /// Topic of the tracks; without / at its start it is in the namespace
     #[arg(long, default_value = "/tracks")]
     pub(crate) topic: String,
     /// Type of its messages
@@ -25,8 +28,14 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) class: Option<String>,
     /// Name of the node; its topics begin with it
-    #[arg(long, default_value = "ddl")]
+    #[arg(long, default_value = NAME)]
     pub(crate) name: String,
+    /// Namespace of the node
+    #[arg(long, value_name = "/SPACE", default_value = "/", value_parser = space)]
+    pub(crate) namespace: String,
+    /// Other name for a topic of the node, such as /tf:=/robot/tf; may be repeated
+    #[arg(long, value_name = "TOPIC:=TOPIC", value_delimiter = ',', value_parser = remapped)]
+    pub(crate) remap: Vec<(String, String)>,
     /// Frame that does not move, in which forecasts are made
     #[arg(long, default_value = "map")]
     pub(crate) frame: String,
@@ -70,7 +79,7 @@ pub(crate) struct Options {
     #[arg(long, env = "ROS_DOMAIN_ID", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=232))]
     pub(crate) domain: u16,
     /// Address of the network interface to be found on [default: all]
-    #[arg(long, value_name = "IP")]
+    #[arg(long, value_name = "IP", value_delimiter = ',')]
     pub(crate) interface: Vec<IpAddr>,
     /// Threads that compute [default: as many as processor cores]
     #[arg(long)]
@@ -78,6 +87,19 @@ pub(crate) struct Options {
 }
 
 impl Options {
+    /// The full name of a topic of the node: `~` stands for the node, and others without / are in the namespace.
+    pub(crate) fn topic(&self, name: &str) -> String {
+        let space = self.namespace.trim_end_matches('/');
+        let full = |name: &str| match name.strip_prefix("~/") {
+            Some(own) => format!("{space}/{}/{own}", self.name),
+            None if name.starts_with('/') => name.to_owned(),
+            None => format!("{space}/{name}"),
+        };
+        let name = full(name);
+        let other = self.remap.iter().find(|(from, _)| full(from) == name);
+        other.map_or(name, |(_, to)| full(to))
+    }
+
     /// The area of the grids, if it is given.
     pub(crate) fn fixed_area(&self) -> anyhow::Result<Option<Area>> {
         let area = self
@@ -94,6 +116,16 @@ fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
         .filter(|numbers| numbers.iter().all(|number: &f64| number.is_finite()));
     let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
     numbers.ok_or_else(|| format!("give {N} numbers with commas between them"))
+}
+
+fn space(text: &str) -> Result<String, String> {
+    let space = text.strip_prefix('/').map(|_| text.to_owned());
+    space.ok_or_else(|| "begin it with /".to_owned())
+}
+
+fn remapped(rule: &str) -> Result<(String, String), String> {
+    let (from, to) = rule.split_once(":=").ok_or("give TOPIC:=TOPIC")?;
+    Ok((from.to_owned(), to.to_owned()))
 }
 
 fn corners(text: &str) -> Result<[f64; 4], String> {

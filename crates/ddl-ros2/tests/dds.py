@@ -34,6 +34,7 @@ class Robot:
 
     def __init__(self, program, log):
         self.program, self.log = program, log
+        Path(log).touch()
         self.participant = DomainParticipant(DOMAIN)
         self.nodes = []
 

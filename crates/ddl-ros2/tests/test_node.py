@@ -190,6 +190,48 @@ def test_everything_is_published_under_the_names_of_ros(robot):
     assert not np.any(until(newest_grid).data)
 
 
+def test_launch_files_give_names_and_parameters(robot, tmp_path):
+    """The arguments of the action Node: names, remapped topics, files of parameters, parameters of the line last."""
+    file = tmp_path / "parameters.yaml"
+    file.write_text("""
+/**:
+  ros__parameters: {type: people_msgs/msg/People, topic: tracks, use_sim_time: true, joint: true, frame: odom}
+/hall/crowd:
+  ros__parameters: {grids: [0.8, 2.0], cell: 0.2, area: [0, -1.5, 9, 5]}
+/hall/other:
+  ros__parameters: {class: person}
+""")
+    other = tmp_path / "other.yaml"
+    other.write_text("camera:\n  ros__parameters: {rate: 5}\n")
+    names = ["-r", "__node:=crowd", "-r", "__ns:=/hall", "-r", "tracks:=/people", "--remap", "~/forecasts:=/seen"]
+    robot.start("--ros-args", *names, "--params-file", file, "--params-file", other, "-p", "frame:=map", "--")
+    writer, forecasts = robot.writer("/people", m.People), robot.reader("/seen", m.Forecasts)
+    grids = robot.reader("/hall/crowd/occupancy/t2", m.OccupancyGrid)
+    matched(writer, forecasts, grids)
+    answer = walk(writer, forecasts, people)[-1]
+    assert answer.joint and answer.header.frame_id == "map" and len(answer.pedestrians) == 2
+    info = until(lambda: grids.take(N=100))[-1].info
+    assert (info.width, info.height, round(info.origin.position.y, 6)) == (45, 33, -1.5)
+    assert robot.told().count(f"note: {other} has no parameters for /hall/crowd or /**") == 1, robot.told()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "problem"),
+    [
+        (["-p", "speed:=3"], "there is no parameter speed"),
+        (["-p", "joint:=3"], "unexpected value '3' for '--joint'"),
+        (["-p", "cell"], "cell: give NAME:=VALUE"),
+        (["-r"], "-r needs a value"),
+        (["--params-file", "nowhere.yaml"], "nowhere.yaml"),
+        (["--params-file", __file__], "test_node.py"),
+        (["--enclave", "/x"], "--enclave is not known: give -p, -r or --params-file"),
+    ],
+)
+def test_wrong_arguments_of_ros_are_told(robot, arguments, problem):
+    ended = subprocess.run([robot.program, "--ros-args", *arguments], capture_output=True, text=True, timeout=20)
+    assert ended.returncode not in (0, 101) and problem in ended.stderr, ended.stderr
+
+
 def test_positions_are_moved_into_the_fixed_frame(robot):
     robot.start("--type=people_msgs/msg/People", "--frame=map", "--transform-age=0.3")
     writer, forecasts = robot.writer("/tracks", m.People), robot.reader("/ddl/forecasts", m.Forecasts)
