@@ -5,6 +5,7 @@ const embedded = (id) => byId(id).textContent;
 const many = (count, one, more) => `${count} ${count === 1 ? one : more}`;
 
 let file = null;
+let isNew = false;
 let asked = 0;
 let worker = start();
 
@@ -103,6 +104,8 @@ function play(page) {
     new frame.contentWindow.ResizeObserver(() => {
       frame.style.height = `${inner.body.offsetHeight}px`;
     }).observe(inner.body);
+    if (isNew) byId("told").scrollIntoView();
+    isNew = false;
     document.body.dataset.shown = asked;
   };
   frame.srcdoc = page;
@@ -117,6 +120,7 @@ function offer(id, text, type, ending) {
 
 function open(chosen) {
   file = chosen;
+  isNew = true;
   ask();
 }
 
