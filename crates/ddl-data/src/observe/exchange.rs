@@ -6,6 +6,9 @@ use crate::observe::track::Expectation;
 
 /// An exchange explains the positions so many times as well as two sudden turns.
 const BETTER: f64 = 4.0;
+/// Somebody seen where another was expected may be so many times as far from there as noise explains, which is
+/// estimated.
+const THERE: f64 = 1.5;
 /// With more surprising positions in a frame these have another cause, such as a wrong rate.
 const MOST: usize = 100;
 
@@ -35,7 +38,7 @@ pub(crate) fn exchanged(rows: impl Iterator<Item = (PedestrianId, Position, Expe
     }
     let is_there = |seen: &Surprise, other: &Surprise| {
         let off = distance(seen.position, other.expected.position);
-        (off <= other.expected.reach).then_some(off)
+        (off <= THERE * other.expected.reach).then_some(off)
     };
     let mut exchanged = Vec::new();
     for (index, one) in surprises.iter().enumerate() {
