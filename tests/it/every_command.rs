@@ -1,4 +1,4 @@
-//! What all commands have in common: help, completions, manual pages, JSON output, quick start.
+//! What all commands have in common: help, completions, JSON output, quick start.
 
 use ddl_tests::place::Place;
 
@@ -21,20 +21,17 @@ fn help_fits_a_screen_and_lists_the_exit_codes() {
 }
 
 #[test]
-fn every_command_has_help_completions_and_a_manual_page() {
+fn every_command_has_help_and_completions() {
     let place = Place::empty();
     let help = place.ok("--help");
     let lines = help.lines().filter_map(|line| line.strip_prefix("  "));
     let commands: Vec<&str> = lines.filter_map(|line| line.split_whitespace().next()).collect();
     assert!(commands.len() >= 13, "{commands:?}");
     let completions = place.ok("completions bash");
-    let _ = place.ok("man pages");
     for command in commands {
         let help = place.ok(&format!("{command} --help"));
         assert!(help.contains("Usage: ddl"), "{command}: {help}");
         assert!(completions.contains(&format!("ddl,{command})")), "{command}");
-        let page = place.text(&format!("pages/ddl-{command}.1"));
-        assert!(page.contains(".TH"), "{command}: {page}");
     }
     for shell in ["zsh", "fish", "powershell", "elvish"] {
         let script = place.ok(&format!("completions {shell}"));

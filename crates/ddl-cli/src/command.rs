@@ -1,10 +1,10 @@
 //! The commands, one in each file, and the options they share.
 
 pub(crate) mod benchmark;
+pub(crate) mod completions;
 pub(crate) mod data;
 pub(crate) mod evaluate;
 pub(crate) mod forecast;
-pub(crate) mod generated;
 pub(crate) mod goals;
 pub(crate) mod info;
 pub(crate) mod occupancy;

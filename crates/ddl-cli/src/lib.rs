@@ -50,8 +50,7 @@ enum Command {
     Windows(command::windows::WindowsCommand),
     Pack(command::pack::Pack),
     Info(command::info::Info),
-    Completions(command::generated::Completions),
-    Man(command::generated::Man),
+    Completions(command::completions::Completions),
 }
 
 /// Runs the program `ddl` with `arguments`, starting with the name of the program. Returns its exit code: 0 success, 1
@@ -95,6 +94,5 @@ fn run_command(command: Command) -> anyhow::Result<()> {
         Command::Pack(command) => command.run(),
         Command::Info(command) => command.run(),
         Command::Completions(command) => command.run(Cli::command()),
-        Command::Man(command) => command.run(Cli::command()),
     }
 }
