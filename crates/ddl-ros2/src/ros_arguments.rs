@@ -98,7 +98,7 @@ fn of_file(file: &str, namespace: Option<&str>, name: Option<&str>) -> anyhow::R
     Ok(parameters)
 }
 
-/// A parameter as a word of the command line. Times are those of the messages, so that a simulation's clock is not asked.
+/// A parameter as a word of the command line. Times are those of the messages: the clock of a simulation is not asked.
 fn option(name: &str, value: &Value) -> anyhow::Result<Option<OsString>> {
     if name == "use_sim_time" {
         return Ok(None);
