@@ -63,8 +63,7 @@ impl Threads {
         if count == 1 {
             return Ok(Self::Calling);
         }
-        let pool = ThreadPoolBuilder::new().num_threads(count).build();
-        pool.map(Self::Own).map_err(Failure::invalid)
+        ddl::thread_pool(count).map(Self::Own).map_err(Failure::invalid)
     }
 
     pub(crate) fn run<T: Send>(&self, work: impl FnOnce() -> Result<T, Failure> + Send) -> Result<T, Failure> {

@@ -64,7 +64,7 @@ pub(crate) struct Machine {
     #[arg(long, default_value = "cpu")]
     pub(crate) device: DeviceChoice,
     /// Threads for the network and goal search [default: all cores; 1 for forecast, view and goals]
-    #[arg(long, value_parser = number_of_threads)]
+    #[arg(long, value_parser = at_least_one)]
     threads: Option<usize>,
 }
 
@@ -200,16 +200,6 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
 
 fn folder(convention: Convention, data: Option<&Path>) -> anyhow::Result<PathBuf> {
     locate(convention, data).context("no recordings; `cargo xtask data fetch` gets them, or use --convention simulated")
-}
-
-/// More threads than any machine has cores only take time to start.
-fn number_of_threads(text: &str) -> Result<usize, String> {
-    match at_least_one(text)? {
-        number @ ..=1024 => Ok(number),
-        number => Err(format!(
-            "{number} threads are more than 1024; leave out --threads to use all cores"
-        )),
-    }
 }
 
 pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {

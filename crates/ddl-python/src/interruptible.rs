@@ -1,8 +1,9 @@
 //! Runs work on a thread pool without holding the GIL. Ctrl-C ends the call; a forked child gets its own pool.
 
+use crate::errors::of_any;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -111,8 +112,7 @@ fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     }
     // 0: the number of cores, or the environment variable RAYON_NUM_THREADS.
     let threads = wanted.unwrap_or(0);
-    let built = ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = Arc::new(built.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
+    let pool = Arc::new(ddl::thread_pool(threads).map_err(of_any)?);
     let old = held.replace(Pool {
         process,
         count: threads,

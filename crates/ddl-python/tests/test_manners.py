@@ -60,6 +60,8 @@ def test_threads_get_the_same_bits(forecaster, crossing):
     ddl.set_num_threads(os.cpu_count())
     with pytest.raises(ValueError, match="at least 1"):
         ddl.set_num_threads(0)
+    with pytest.raises(ValueError, match="1025 threads are more than 1024"):
+        ddl.set_num_threads(1025)
 
 
 LONG = """

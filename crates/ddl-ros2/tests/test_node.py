@@ -221,6 +221,7 @@ def test_launch_files_give_names_and_parameters(robot, tmp_path):
         (["-p", "speed:=3"], "there is no parameter speed"),
         (["-p", "joint:=3"], "unexpected value '3' for '--joint'"),
         (["-p", "cell"], "cell: give NAME:=VALUE"),
+        (["-p", "threads:=1025"], "1025 threads are more than 1024"),
         (["-r"], "-r needs a value"),
         (["--params-file", "nowhere.yaml"], "nowhere.yaml"),
         (["--params-file", __file__], "test_node.py"),

@@ -9,6 +9,9 @@ use ddl_network::{
 };
 use std::sync::Arc;
 
+/// Most threads that can be asked for: more than a machine has cores only take time to start.
+const MOST_THREADS: usize = 1024;
+
 /// A device that has been opened and is available.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Device {
@@ -114,16 +117,31 @@ impl Device {
 /// itself uses one thread. Call it once, before anything else: CUDA can be opened only before the first tensor is made.
 ///
 /// # Errors
-/// When the device is unavailable.
+/// When the device is unavailable; more than 1,024 threads.
 pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlError> {
     Device::open(device)?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-    let threads = threads.unwrap_or(cores).max(1);
+    let pool = pool_of(threads.unwrap_or(cores).max(1))?;
     #[cfg(feature = "torch")]
     ddl_star::set_threads(1);
     // An existing thread pool is kept: results do not depend on the number of threads.
-    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    let _ = pool.build_global();
     Ok(())
+}
+
+/// Threads of their own for the kernels and goal search, for those who call `install` on them; 0: one for each core.
+///
+/// # Errors
+/// More than 1,024, or the system refuses.
+pub fn thread_pool(threads: usize) -> Result<rayon::ThreadPool, DdlError> {
+    Ok(pool_of(threads)?.build()?)
+}
+
+fn pool_of(threads: usize) -> Result<rayon::ThreadPoolBuilder, DdlError> {
+    if threads > MOST_THREADS {
+        return Err(DdlError::Threads(threads));
+    }
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads))
 }
 
 /// "yes", or "no" with the reason.

@@ -31,6 +31,10 @@ pub enum DdlError {
          each scene alone"
     )]
     TooManyWaiting { limit: usize },
+    #[error("{0} threads are more than 1024; without a number there is one for each core")]
+    Threads(usize),
+    #[error("threads cannot be started: {0}")]
+    ThreadPool(#[from] rayon::ThreadPoolBuildError),
     #[error(transparent)]
     Memory(#[from] ddl_memory::MemoryError),
     #[error(transparent)]

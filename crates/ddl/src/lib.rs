@@ -53,7 +53,7 @@ pub use ddl_core::{
     AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, Pace, RegionTable, Spread, WeightedGoals,
 };
 pub use ddl_network::{DeviceChoice, Variant};
-pub use device::{cuda_status, prepare};
+pub use device::{cuda_status, prepare, thread_pool};
 pub use error::DdlError;
 pub use forecast::certified::{CertificateError, CertifiedForecast};
 pub use forecast::joint::GivenPlan;
