@@ -35,6 +35,26 @@ fn every_role_of_a_scene_is_drawn_and_named() {
     assert_eq!(count(&svg, STAR), 2 + 1);
 }
 
+/// What has no rule is black.
+#[test]
+fn every_class_of_a_picture_has_a_rule_in_its_file() {
+    let window = window(2);
+    let forecast = StraightLine(TrueEndpoint).forecast(&window).unwrap();
+    let tracks = [window.track(0).to_vec(), window.track(1).to_vec()];
+    for svg in [
+        figure::scene(&window, &forecast).unwrap(),
+        figure::place("hall", "2 tracks", &tracks),
+    ] {
+        let (style, shapes) = svg.split_once("</style>").unwrap();
+        // All text has one.
+        let elements = shapes.split('<').filter(|element| !element.starts_with("text"));
+        let classes = elements.filter_map(|element| element.split_once("class=\"")?.1.split('"').next());
+        for class in classes.flat_map(str::split_whitespace) {
+            assert!(style.contains(&format!(".{class} {{")), "no rule for .{class}");
+        }
+    }
+}
+
 #[test]
 fn a_window_without_future_has_no_truth() {
     let window = window(1).without_future();
