@@ -1,7 +1,6 @@
 //! The errors of the pedestrians of one kind of motion.
 
-use serde::{Deserialize, Deserializer, Serialize, de::Error as _};
-use serde_json::Value;
+use serde::{Deserialize, Serialize};
 
 use crate::category::MotionKind;
 use crate::pedestrian_scores::PedestrianScores;
@@ -24,15 +23,6 @@ pub struct CategoryScores {
     /// FDE in the future of JFDE, metres; `None` except under `joint`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint_fde: Option<f64>,
-}
-
-/// Reads the scores by kind of motion. Earlier versions also wrote `TrajNet++`'s types and kinds of interaction.
-pub(crate) fn of_motion<'de, D: Deserializer<'de>>(field: D) -> Result<Vec<CategoryScores>, D::Error> {
-    let all = Vec::<Value>::deserialize(field)?.into_iter();
-    let is_of = |scores: &Value, kind: &str| scores["category"].get(kind).is_some();
-    let kept = all.filter(|scores| !is_of(scores, "type") && !is_of(scores, "interaction"));
-    kept.map(|scores| serde_json::from_value(scores).map_err(D::Error::custom))
-        .collect()
 }
 
 impl CategoryScores {

@@ -4,7 +4,7 @@ use ddl_core::{Forecast, Window};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::category_scores::{self, CategoryScores};
+use crate::category_scores::CategoryScores;
 use crate::error::{EvaluationError, WindowProblem};
 use crate::metric::amd::amv;
 use crate::metric::deployable::DeployableErrors;
@@ -91,7 +91,7 @@ pub struct Scores {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub joint: Option<JointScores>,
     /// The pedestrians by kind of motion, in the order of [`MotionKind::ALL`](crate::MotionKind::ALL).
-    #[serde(default, deserialize_with = "category_scores::of_motion")]
+    #[serde(default)]
     pub categories: Vec<CategoryScores>,
 }
 

@@ -152,22 +152,6 @@ fn scores_written_before_there_were_more_metrics_still_load() {
 }
 
 #[test]
-fn scores_of_categories_that_there_are_no_more_are_left_out() {
-    let mut scores = scores(0.1);
-    scores.categories = turning(3, 0.1);
-    let text = serde_json::to_string(&scores).unwrap();
-    let motion = r#"{"category":{"motion":"turning-left"},"#;
-    assert!(text.contains(motion), "{text}");
-    let with = |category: &str| text.replace(motion, &format!(r#"{{"category":{category}}},{motion}"#));
-    for removed in [r#"{"type":"interacting"}"#, r#"{"interaction":"leader-follower"}"#] {
-        let read: Scores = serde_json::from_str(&with(removed)).unwrap();
-        assert_eq!(read, scores);
-    }
-    let unknown = serde_json::from_str::<Scores>(&with(r#"{"gait":"hasty"}"#)).unwrap_err();
-    assert!(unknown.to_string().contains("missing field `motion`"), "{unknown}");
-}
-
-#[test]
 fn several_seeds_give_mean_and_deviation() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.2);
     rows.extend(five_folds(Protocol::Fair, 2, 0.4));
