@@ -4,7 +4,7 @@ use crate::cdr::{Message, read};
 use crate::error::RosError;
 use crate::msg::{Detection3DArray, Header, People, Point, TrackedPersons};
 use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position, is_frame};
-use ddl_data::Numbering;
+use ddl_data::{COORDINATE_LIMIT, Numbering};
 use std::collections::BTreeMap;
 
 /// The pedestrians of one message.
@@ -34,10 +34,12 @@ impl Observed {
         observed
     }
 
-    /// Leaves out rows whose x or y is not finite.
+    /// Leaves out rows whose x or y is not finite, or beyond [`COORDINATE_LIMIT`].
     pub fn keep_finite(&mut self) {
-        let is_finite = |seen: &SeenPedestrian| (seen.position.x + seen.position.y).is_finite();
-        self.keep("x or y is not finite", is_finite);
+        let is_near = |coordinate: f64| coordinate.abs() <= COORDINATE_LIMIT;
+        self.keep("x or y is not finite, or beyond 10,000 km", |seen| {
+            is_near(seen.position.x) && is_near(seen.position.y)
+        });
     }
 
     /// Leaves out the other rows, and counts them under this reason.

@@ -17,7 +17,7 @@ const WAIT: Duration = Duration::from_millis(200);
 /// Messages kept for a subscriber that is late; paths, one for each pedestrian, are many.
 const DEPTH: usize = 10;
 const DEPTH_OF_PATHS: usize = 1000;
-const DEPTH_OF_TRANSFORMS: usize = 100;
+pub(crate) const DEPTH_OF_TRANSFORMS: usize = 100;
 
 pub(crate) struct Inputs<T> {
     pub(crate) tracks: Subscription<T>,

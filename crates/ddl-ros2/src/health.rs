@@ -32,7 +32,9 @@ pub(crate) struct Health {
     /// Messages that were moved by a transform older than they are.
     pub(crate) held: u64,
     pub(crate) left_out: usize,
-    pub(crate) doubtful: u64,
+    pub(crate) doubtful: usize,
+    /// How often time went back.
+    pub(crate) restarts: u64,
     /// Milliseconds from the arrival of a message to its forecast.
     latencies: VecDeque<f64>,
     last_error: String,
@@ -107,6 +109,7 @@ impl Health {
             ("transforms held", self.held.to_string()),
             ("rows left out", self.left_out.to_string()),
             ("doubtful positions", self.doubtful.to_string()),
+            ("times gone back", self.restarts.to_string()),
             ("latency p50 (ms)", format!("{:.2}", quantile(0.5))),
             ("latency p99 (ms)", format!("{:.2}", quantile(0.99))),
             ("last error", self.last_error.clone()),

@@ -1,17 +1,18 @@
 //! The node: the loop from a message with tracks to its forecast.
 
-use crate::graph::{self, Inputs, Outputs, publish, take};
+use crate::graph::{self, DEPTH_OF_TRANSFORMS, Inputs, Outputs, publish, take};
 use crate::health::Health;
 use crate::options::Options;
 use crate::place::{Place, WindowForecast};
 use crate::tell;
 use crate::transforms::{Transforms, moved};
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow};
 use ddl::data::{TIME_STEP, is_vehicle};
 use ddl::scene::{Area, Futures, Occupancy};
 use ddl_ros::msg::{Forecasts, Header};
 use ddl_ros::{Moment, Observed, Tracks, occupancy_grid};
 use ros2_client::{Gid, MessageInfo, ROSTime, SystemTime};
+use std::iter::from_fn;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -43,15 +44,19 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
         options.frame,
         options.domain
     ));
+    for name in options.strange_topics() {
+        tell(&format!("note: {name} is no topic of the node, so it is not remapped"));
+    }
     while !stopped.load(Ordering::Relaxed) {
         inputs.wait()?;
+        // No more than waited: who sends without end must not keep the node from forecasts, reports and its end.
         for (subscription, is_static) in [(&inputs.resting, true), (&inputs.moving, false)] {
-            while let Some(message) = take(subscription) {
+            for message in from_fn(|| take(subscription)).take(DEPTH_OF_TRANSFORMS) {
                 let added = message.and_then(|(message, _)| forecasting.transforms.add(message, is_static));
                 added.unwrap_or_else(|error| forecasting.health.fault(&error));
             }
         }
-        while let Some(message) = take(&inputs.tracks) {
+        for message in from_fn(|| take(&inputs.tracks)).take(options.depth.into()) {
             forecasting.health.hear();
             let observed = message.and_then(|(message, info)| forecasting.observe(message, &info));
             observed.unwrap_or_else(|error| forecasting.health.dropped(&error));
@@ -97,7 +102,7 @@ impl Forecasting<'_> {
             self.health.left_out += count;
             self.health.warn(&format!("rows are left out: {reason}"));
         }
-        self.health.doubtful += self.place.observe(&observed)? as u64;
+        self.place.observe(&observed, &mut self.health)?;
         self.arrived = info.received_timestamp();
         Ok(())
     }
@@ -147,7 +152,14 @@ impl Forecasting<'_> {
         }
         let futures = Futures::new(window, forecast.clone())?;
         let around = || futures.area(MARGIN, self.options.cell);
-        let area = *self.last_area.insert(self.fixed_area.map_or_else(around, Ok)?);
+        let area = match (self.fixed_area.map_or_else(around, Ok), self.last_area) {
+            // Somebody far away: a costmap must not keep an old grid.
+            (Err(error), Some(last)) => {
+                self.health.fault(&anyhow!("the grids keep their last area: {error}"));
+                last
+            }
+            (area, _) => *self.last_area.insert(area?),
+        };
         let grids = futures.occupancy(&area, &self.options.grids, Occupancy::BODY)?;
         for (grid, output) in grids.zip(&outputs.grids) {
             publish(output, occupancy_grid(&grid, header))?;

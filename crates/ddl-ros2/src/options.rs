@@ -2,16 +2,13 @@
 
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
-use ddl::data::{HORIZON, TIME_STEP};
+use ddl::data::{HORIZON, LiveTracks, TIME_STEP};
 use ddl::scene::Area;
 use ddl_ros::Message as _;
 use ddl_ros::msg::{Detection3DArray, People, TrackedPersons};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion};
 use std::net::IpAddr;
 use std::path::PathBuf;
-
-/// The name of a node that has none.
-pub(crate) const NAME: &str = "ddl";
 
 /// Forecast pedestrians in ROS 2: subscribe to tracks, publish where they will be in the next 4.8 s
 #[derive(Debug, Parser)]
@@ -28,7 +25,7 @@ pub(crate) struct Options {
     #[arg(long)]
     pub(crate) class: Option<String>,
     /// Name of the node; its topics begin with it
-    #[arg(long, default_value = NAME)]
+    #[arg(long, default_value = "ddl")]
     pub(crate) name: String,
     /// Namespace of the node
     #[arg(long, value_name = "/SPACE", default_value = "/", value_parser = space)]
@@ -43,7 +40,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "X,Y,Z,YAW,PITCH,ROLL", value_parser = transform)]
     pub(crate) transform: Option<Isometry3<f64>>,
     /// Oldest transform of /tf that is used where none is newer than the tracks, seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.2)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.2, value_parser = short)]
     pub(crate) transform_age: f64,
     /// Model: the directory of a run, or a packed file [default: the built-in one]
     #[arg(long)]
@@ -58,7 +55,7 @@ pub(crate) struct Options {
     #[arg(long, default_value_t = 0.1, value_parser = positive)]
     pub(crate) cell: f64,
     /// Lowest x and y, largest x and y of the grids, metres [default: all paths, and 1 m around them]
-    #[arg(long, value_name = "X,Y,X,Y", value_parser = corners)]
+    #[arg(long, value_name = "X,Y,X,Y", value_parser = corners, requires = "grids")]
     pub(crate) area: Option<[f64; 4]>,
     /// Most forecasts a second [default: one for each message]
     #[arg(long, value_name = "HZ", value_parser = positive)]
@@ -67,7 +64,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE")]
     pub(crate) memory: Option<PathBuf>,
     /// Oldest last row of a pedestrian that is still forecast, seconds
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = short)]
     pub(crate) max_age: Option<f64>,
     /// Ask the tracker to send lost messages again; one that is best effort is then not heard
     #[arg(long)]
@@ -87,17 +84,38 @@ pub(crate) struct Options {
 }
 
 impl Options {
-    /// The full name of a topic of the node: `~` stands for the node, and others without / are in the namespace.
+    /// The full name of a topic of the node, as it is remapped.
     pub(crate) fn topic(&self, name: &str) -> String {
+        let name = self.full(name);
+        let other = self.remap.iter().find(|(from, _)| self.full(from) == name);
+        other.map_or(name, |(_, to)| self.full(to))
+    }
+
+    /// `~` stands for the node, and other names without / at their start are in the namespace.
+    fn full(&self, name: &str) -> String {
         let space = self.namespace.trim_end_matches('/');
-        let full = |name: &str| match name.strip_prefix("~/") {
+        match name.strip_prefix("~/") {
             Some(own) => format!("{space}/{}/{own}", self.name),
             None if name.starts_with('/') => name.to_owned(),
             None => format!("{space}/{name}"),
-        };
-        let name = full(name);
-        let other = self.remap.iter().find(|(from, _)| full(from) == name);
-        other.map_or(name, |(_, to)| full(to))
+        }
+    }
+
+    /// Names that are to be remapped, and are no topics of the node.
+    pub(crate) fn strange_topics(&self) -> impl Iterator<Item = &str> {
+        let own = [
+            "/tf",
+            "/tf_static",
+            "/diagnostics",
+            "~/forecasts",
+            "~/paths",
+            "~/markers",
+        ];
+        let known = own.into_iter().chain([self.topic.as_str()]).map(|name| self.full(name));
+        let grids = self.full("~/occupancy/");
+        let known: Vec<String> = known.collect();
+        let names = self.remap.iter().map(|(from, _)| from.as_str());
+        names.filter(move |name| !known.contains(&self.full(name)) && !self.full(name).starts_with(&grids))
     }
 
     /// The area of the grids, if it is given.
@@ -146,6 +164,16 @@ fn ahead(text: &str) -> Result<f64, String> {
     } else {
         Err(format!("give seconds from 0 to {last:.1}"))
     }
+}
+
+/// A time no longer than tracks are carried on.
+fn short(text: &str) -> Result<f64, String> {
+    let [number] = numbers(text)?;
+    let longest = LiveTracks::LONGEST_GAP;
+    let is_short = (0.0..=longest).contains(&number);
+    is_short
+        .then_some(number)
+        .ok_or_else(|| format!("give seconds from 0 to {longest}"))
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -1,5 +1,6 @@
 //! The place that is watched: its tracks, its memory, its forecasts.
 
+use crate::health::Health;
 use crate::options::Options;
 use crate::tell;
 use anyhow::ensure;
@@ -60,8 +61,8 @@ impl Place {
         Ok(place)
     }
 
-    /// Adds a frame in fixed coordinates. Returns the number of rows that do not fit their track.
-    pub(crate) fn observe(&mut self, observed: &Observed) -> anyhow::Result<usize> {
+    /// Adds a frame in fixed coordinates.
+    pub(crate) fn observe(&mut self, observed: &Observed, health: &mut Health) -> anyhow::Result<()> {
         let time = observed.header.stamp.microseconds();
         if let Some(last) = self.last
             && time <= last
@@ -69,10 +70,11 @@ impl Place {
             let [time, last] = [time, last].map(|time| time as f64 / 1e6);
             ensure!(
                 last - time > LiveTracks::LONGEST_GAP,
-                "tracks of {time} s come after those of {last} s; a tracker must publish in order of time"
+                "tracks of {time} s come after those of {last} s; one tracker must publish, in order of time"
             );
-            tell(&format!(
-                "note: time goes back from {last} s to {time} s; all tracks begin anew"
+            health.restarts += 1;
+            health.warn(&format!(
+                "time goes back from {last} s to {time} s, and all tracks begin anew; is there a second tracker?"
             ));
             self.regions.clear();
             if let Some(place) = self.scenes.forget(None) {
@@ -87,7 +89,8 @@ impl Place {
         if tracks.is_some_and(LiveTracks::is_moment) {
             self.moment = Some((observed.header.clone(), newer));
         }
-        Ok(tracks.map_or(0, |tracks| tracks.misfits().len()))
+        health.doubtful += tracks.map_or(0, |tracks| tracks.misfits().len());
+        Ok(())
     }
 
     /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; no

@@ -49,7 +49,8 @@ impl Transforms {
             let (frame, parent) = (name(&stamped.child_frame_id), name(&stamped.header.frame_id));
             let (to, turned) = (stamped.transform.translation, stamped.transform.rotation);
             let turned = Quaternion::new(turned.w, turned.x, turned.y, turned.z);
-            let Some(turned) = UnitQuaternion::try_new(turned, 1e-6).filter(|_| (to.x + to.y + to.z).is_finite())
+            let Some(turned) =
+                UnitQuaternion::try_new(turned, 1e-6).filter(|turned| (to.x + to.y + to.z + turned.norm()).is_finite())
             else {
                 added = Err(anyhow!("the transform from {frame} to {parent} is not one"));
                 continue;

@@ -196,14 +196,18 @@ def test_launch_files_give_names_and_parameters(robot, tmp_path):
     file.write_text("""
 /**:
   ros__parameters: {type: people_msgs/msg/People, topic: tracks, use_sim_time: true, joint: true, frame: odom}
-/hall/crowd:
-  ros__parameters: {grids: [0.8, 2.0], cell: 0.2, area: [0, -1.5, 9, 5]}
-/hall/other:
-  ros__parameters: {class: person}
+/hall:
+  crowd:
+    ros__parameters: {grids: [0.8, 2.0], cell: 0.2}
+  other:
+    ros__parameters: {class: person}
+/**/crowd:
+  ros__parameters: {area: [0, -1.5, 9, 5]}
 """)
     other = tmp_path / "other.yaml"
-    other.write_text("camera:\n  ros__parameters: {rate: 5}\n")
+    other.write_text("crowd:\n  ros__parameters: {rate: 5}\n")
     names = ["-r", "__node:=crowd", "-r", "__ns:=/hall", "-r", "tracks:=/people", "--remap", "~/forecasts:=/seen"]
+    names += ["-r", "/trakcs:=/people", "--enable-rosout-logs"]
     robot.start("--ros-args", *names, "--params-file", file, "--params-file", other, "-p", "frame:=map", "--")
     writer, forecasts = robot.writer("/people", m.People), robot.reader("/seen", m.Forecasts)
     grids = robot.reader("/hall/crowd/occupancy/t2", m.OccupancyGrid)
@@ -212,23 +216,34 @@ def test_launch_files_give_names_and_parameters(robot, tmp_path):
     assert answer.joint and answer.header.frame_id == "map" and len(answer.pedestrians) == 2
     info = until(lambda: grids.take(N=100))[-1].info
     assert (info.width, info.height, round(info.origin.position.y, 6)) == (45, 33, -1.5)
-    assert robot.told().count(f"note: {other} has no parameters for /hall/crowd or /**") == 1, robot.told()
+    notes = [f"{other} has no parameters for /hall/crowd", "/trakcs is no topic of the node", "rosout-logs has no effect"]
+    for note in notes:
+        assert robot.told().count(note) == 1, robot.told()
 
 
 @pytest.mark.parametrize(
     ("arguments", "problem"),
     [
         (["-p", "speed:=3"], "there is no parameter speed"),
-        (["-p", "joint:=3"], "unexpected value '3' for '--joint'"),
+        (["-p", "joint:=3"], "parameter joint is true or false, not 3"),
+        (["-p", "name:=hall"], "there is no parameter name"),
+        (["-p", "transform_age:=nan"], "give 1 numbers"),
+        (["-r", "ddl:/tracks:=/people"], "leave out what is before the name"),
+        (["--params-file", "ddl: {ros__parameters: {frame: 7}}"], "parameter frame is a text: write 7 in quotes"),
+        (["--params-file", "ddl: {ros__parameters: {frame: }}"], "parameter frame has no value"),
         (["-p", "cell"], "cell: give NAME:=VALUE"),
         (["-p", "threads:=1025"], "1025 threads are more than 1024"),
         (["-r"], "-r needs a value"),
         (["--params-file", "nowhere.yaml"], "nowhere.yaml"),
         (["--params-file", __file__], "test_node.py"),
-        (["--enclave", "/x"], "--enclave is not known: give -p, -r or --params-file"),
+        (["--security", "/x"], "--security is not known: give -p, -r or --params-file"),
     ],
 )
-def test_wrong_arguments_of_ros_are_told(robot, arguments, problem):
+def test_wrong_arguments_of_ros_are_told(robot, tmp_path, arguments, problem):
+    if "ros__parameters" in arguments[-1]:
+        file = tmp_path / "parameters.yaml"
+        file.write_text(arguments[-1])
+        arguments = [arguments[0], file]
     ended = subprocess.run([robot.program, "--ros-args", *arguments], capture_output=True, text=True, timeout=20)
     assert ended.returncode not in (0, 101) and problem in ended.stderr, ended.stderr
 
@@ -292,9 +307,35 @@ def test_what_is_wrong_is_told_and_survived(robot):
     assert len(walk(writer, forecasts, people, start=101.3)[-1].pedestrians) == 2
     until(lambda: report(diagnostics, "dropped") == 2)
     told = robot.told()
-    wrong = ["People is malformed", "left out: x or y is not finite", "tracks of 101 s come after those of 101.2 s"]
-    for line in [*wrong, "note: time goes back from 101.2 s to 90 s"]:
+    wrong = ["People is malformed", "left out: x or y is not finite", "tracks of 101 s come after those of 101.2 s; one tracker"]
+    for line in [*wrong, "warning: time goes back from 101.2 s to 90 s, and all tracks begin anew"]:
         assert told.count(line) == 1, told
+
+
+def test_a_flood_is_forecast_reported_and_ended(robot):
+    """A crowd as often as they can be sent, and one far away, who must not stop the grids."""
+    robot.start("--type=people_msgs/msg/People", "--joint", "--grids=0.8")
+    writer, diagnostics = robot.writer("/tracks", m.People), robot.reader("/diagnostics", m.DiagnosticArray)
+    head = m.message("ddl_msgs/Forecasts: Header header, float64 time_step, bool joint, uint32 pedestrians")
+    forecasts, grids = robot.reader("/ddl/forecasts", head), robot.reader("/ddl/occupancy/t0_8", m.OccupancyGrid)
+    matched(writer, forecasts, grids, diagnostics)
+    near = {str(i): (i % 20, i // 20) for i in range(40)}
+    for k in range(10):
+        writer.write(people(100 + 0.1 * k, near | ({"far": (3000, 4000)} if k > 6 else {})))
+        time.sleep(0.3)
+    until(lambda: len(grids.read(N=100)) > 8)
+    assert "the grids keep their last area" in robot.told()
+    forecasts.take(N=1000)
+    crowd = {str(i): (i % 20, i // 20) for i in range(150)}
+    end, k = time.monotonic() + 5, 0
+    while time.monotonic() < end:
+        writer.write(people(110 + 0.01 * (k := k + 1), crowd))
+    assert len(forecasts.take(N=1000)) >= 2 and report(diagnostics, "frames") > 20
+    robot.nodes[0].terminate()
+    end = time.monotonic() + 10
+    while robot.nodes[0].poll() is None and time.monotonic() < end:
+        writer.write(people(110 + 0.01 * (k := k + 1), crowd))
+    assert robot.nodes[0].poll() == 0
 
 
 def test_nothing_is_lost_and_forecasts_are_in_time(robot):
