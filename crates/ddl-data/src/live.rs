@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
-use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_finite, is_frame};
+use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_frame};
 use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
+use crate::observation::COORDINATE_LIMIT;
 use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, Row};
 use crate::recording::Recording;
 
@@ -409,7 +410,7 @@ impl LiveTracks {
 /// Sorts the pedestrians of one frame by id, and checks that the frame may follow the last one (`None`: no frame yet).
 ///
 /// # Errors
-/// [`LiveError`] for a frame that is not below 2^53 in size or not after the last, a position that is not finite, or a
+/// [`LiveError`] for a frame that is not below 2^53 in size or not after the last, a position that is not finite or too far away, or a
 /// repeated pedestrian.
 pub fn checked_frame(
     frame: i64,
@@ -425,8 +426,9 @@ pub fn checked_frame(
     let mut positions: Vec<(PedestrianId, Position)> = positions.into_iter().collect();
     positions.sort_unstable_by_key(|&(id, _)| id);
     for &(pedestrian, position) in &positions {
-        if !is_finite(position) {
-            return Err(LiveError::NotFinite {
+        // False for NaN.
+        if !position.iter().all(|coordinate| coordinate.abs() <= COORDINATE_LIMIT) {
+            return Err(LiveError::NoPosition {
                 pedestrian,
                 frame,
                 position,
@@ -456,8 +458,11 @@ pub enum LiveError {
          clear the tracks, or end those of the memory, before its first frame"
     )]
     TooEarly { frame: i64, last: i64 },
-    #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]
-    NotFinite {
+    #[error(
+        "frame {frame}, pedestrian {pedestrian}: {position:?} is no position; x and y are finite, and within \
+         {COORDINATE_LIMIT} m of the origin"
+    )]
+    NoPosition {
         pedestrian: PedestrianId,
         frame: i64,
         position: Position,

@@ -4,14 +4,14 @@ use ddl_data::{ClockError, LiveError, LiveTracks, PedestrianId};
 
 #[test]
 fn errors_change_nothing() {
-    let (pedestrian, here, position) = (PedestrianId(3), [1.0, 2.0], [f64::INFINITY, 0.0]);
+    let (pedestrian, here, position) = (PedestrianId(3), [1.0, 2.0], [1.1e7, 0.0]);
     let mut tracks = LiveTracks::with_frame_step(6).unwrap();
     for last in 0..20 {
         tracks.push(last, [(pedestrian, here)]).unwrap();
         let before = tracks.clone();
         let (frame, far) = (last + 6, i64::MIN);
         let too_early = |frame| LiveError::TooEarly { frame, last };
-        let not_finite = LiveError::NotFinite {
+        let too_far = LiveError::NoPosition {
             pedestrian,
             frame,
             position,
@@ -22,7 +22,7 @@ fn errors_change_nothing() {
             (last - 1, vec![], too_early(last - 1)),
             (far, vec![], LiveError::FrameOutOfRange { frame: far }),
             (frame, twice, LiveError::Duplicate { pedestrian, frame }),
-            (frame, vec![(pedestrian, position)], not_finite),
+            (frame, vec![(pedestrian, position)], too_far),
         ] {
             assert_eq!(tracks.push(frame, pedestrians), Err(error));
             assert_eq!(tracks, before);
