@@ -176,6 +176,12 @@ def test_what_cannot_be_read_is_named(program, folder, tmp_path):
     whole = (folder / "ZSTD.mcap").read_bytes()
     (tmp_path / "cut.mcap").write_bytes(whole[: len(whole) // 2])
     assert "cut.mcap is cut off" in run(program, "data", tmp_path / "cut.mcap", check=True).stderr
+    shutil.copytree(folder / "bag", tmp_path / "bag")
+    (tmp_path / "bag/bag.mcap").rename(tmp_path / "bag/other.mcap")
+    assert "metadata.yaml lists bag.mcap, which is missing" in error("forecast", tmp_path / "bag")
+    words = "MCAP has no place for --certificate and --region"
+    for option in [["--certificate"], ["--region", "0.9"]]:
+        assert words in error("forecast", folder / "ZSTD.mcap", *option, "-o", tmp_path / "x.mcap")
     shutil.rmtree(tmp_path)
 
 

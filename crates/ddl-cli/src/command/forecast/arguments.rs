@@ -108,6 +108,9 @@ impl Answer for ForecastCommand {
         if self.format.is_some() {
             bail!("--format is of text, and --output names MCAP: leave out one of them");
         }
+        if self.certificate || !self.region.is_empty() {
+            bail!("MCAP has no place for --certificate and --region: leave them out, or write another file");
+        }
         for moment in moments {
             log.add(moment.window, moment.forecast, self.joint, moment.microseconds())?;
         }
