@@ -102,6 +102,12 @@ test("a memory grows, times are seconds, and a faulty frame changes nothing", ()
   assert.equal(place.observe(24, Float64Array.of(7), Float64Array.of(30, 1)).forecasts.length, 1);
   assert.throws(() => forecast("a.csv", Buffer.from("frame,pedestrian,x,y\n0,1,left,2\n")), /a\.csv, line 2, field 3/);
   assert.throws(() => forecast("a.csv", Buffer.from("\x89MCAP0\r\n", "latin1")), /a\.csv: an MCAP file/);
+  assert.throws(() => forecast("a.csv", bytes.toString()), /the bytes of the file are no Uint8Array/);
+  assert.throws(() => forecast({}, bytes), /the name of the file is no string/);
+  for (const moment of [NaN, 5e9]) {
+    assert.throws(() => place.observe(moment, Float64Array.of(7), Float64Array.of(0, 0)), /a number of seconds/);
+  }
+  assert.throws(() => place.observe(30, Float64Array.of(7), Float64Array.of(1e8, 0)), /is no position/);
   for (const number of [NaN, Infinity]) assert.throws(() => new Live({ maxAge: number }), /maxAge is/);
   assert.throws(() => forecast(SAMPLE, bytes, { region: [NaN] }), /region is/);
   for (const options of [{ unit: "m" }, { homography: "1" }, { keep: "a=b" }, { last: true }, { moments: 1 }]) {

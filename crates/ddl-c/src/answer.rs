@@ -202,6 +202,15 @@ impl Answer {
         };
         let area = area.map_err(Failure::invalid)?;
         let times = Occupancy::every(cells.every).map_err(Failure::invalid)?;
+        let [width, height] = area.size();
+        if width * height * times.len() > Area::MOST_CELLS {
+            return Err(Failure::invalid(format!(
+                "{} grids of {width} x {height} cells have more than {} numbers; ask for larger cells, a smaller area or \
+                 fewer times",
+                times.len(),
+                Area::MOST_CELLS
+            )));
+        }
         threads.run(|| {
             let grids = futures
                 .occupancy(&area, &times, cells.radius)
@@ -212,7 +221,7 @@ impl Answer {
             Ok(())
         })?;
         self.times = times;
-        let ([width, height], [x, y]) = (area.size(), area.origin());
+        let [x, y] = area.origin();
         self.occupancy = ddl_occupancy {
             times: self.times.len(),
             width,

@@ -4,8 +4,8 @@
 
 use crate::layout::ddl_status;
 use std::cell::RefCell;
+use std::error::Error;
 use std::ffi::{CStr, CString, c_char};
-use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Why a call failed.
@@ -14,13 +14,13 @@ pub(crate) struct Failure(ddl_status, String);
 
 impl Failure {
     /// What was passed is wrong.
-    pub(crate) fn invalid(error: impl Display) -> Self {
-        Self(ddl_status::INVALID, error.to_string())
+    pub(crate) fn invalid(error: impl Into<Box<dyn Error>>) -> Self {
+        Self(ddl_status::INVALID, ddl::with_causes(&*error.into()))
     }
 
     /// A file is missing, unreadable or wrong.
-    pub(crate) fn file(error: impl Display) -> Self {
-        Self(ddl_status::FILE, error.to_string())
+    pub(crate) fn file(error: impl Into<Box<dyn Error>>) -> Self {
+        Self(ddl_status::FILE, ddl::with_causes(&*error.into()))
     }
 }
 

@@ -56,7 +56,7 @@ impl Live {
         // False for NaN.
         if !(frame.fract() == 0.0 && frame.abs() < LARGEST) {
             let words = if self.has_times {
-                "a number of seconds"
+                "a number of seconds below 9e9"
             } else {
                 "a whole number, as `rate` counts frames"
             };

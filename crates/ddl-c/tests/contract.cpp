@@ -107,6 +107,10 @@ void scenes_answer_plans(const ddl::Model& model) {
     REQUIRE(grids.probabilities[8 * 44 + 18] > 0.999F && grids.probabilities[0] == 0.0F);
     REQUIRE(grids.time[12] > 4.79 && grids.origin.x == -1.0);
     const std::vector<float> before(grids.probabilities, grids.probabilities + 13 * 44 * 20);
+    cells.every = 0.01;
+    cells.cell = 0.01;
+    REQUIRE(has(error_of([&] { forecast.occupancy(cells); }), "fewer times"));
+    cells.cell = 0.25;
     cells.radius = -1.0;
     REQUIRE(has(error_of([&] { forecast.occupancy(cells); }), "the radius of a body is -1"));
     cells.cell = 0.0;

@@ -25,11 +25,11 @@ pub(crate) fn of_any(error: impl Error + 'static) -> PyErr {
     let mut cause: Option<&(dyn Error + 'static)> = Some(&error);
     while let Some(one) = cause {
         if let Some(io) = one.downcast_ref::<std::io::Error>() {
-            return of_io(io.kind(), error.to_string());
+            return of_io(io.kind(), ddl::with_causes(&error));
         }
         cause = one.source();
     }
-    PyValueError::new_err(error.to_string())
+    PyValueError::new_err(ddl::with_causes(&error))
 }
 
 fn of_io(kind: ErrorKind, message: String) -> PyErr {

@@ -33,15 +33,7 @@ pub(crate) fn parse(json: &str) -> Result<JsValue, Failure> {
 
 /// An error and its causes, each once, as an `Error` of JavaScript.
 pub(crate) fn thrown(failure: &dyn Error) -> JsError {
-    let mut words = failure.to_string();
-    let mut cause = failure.source();
-    while let Some(error) = cause {
-        if !words.contains(&error.to_string()) {
-            words = format!("{words}: {error}");
-        }
-        cause = error.source();
-    }
-    JsError::new(&words)
+    JsError::new(&ddl::with_causes(failure))
 }
 
 /// `Answer` of `types.d.ts`, of JSON lines.

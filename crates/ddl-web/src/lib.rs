@@ -7,6 +7,7 @@ mod tracks;
 mod view;
 
 use exchange::{Failure, answer, thrown};
+use js_sys::Uint8Array;
 use options::Options;
 use std::cell::OnceCell;
 use std::sync::Arc;
@@ -25,12 +26,16 @@ const TYPES: &str = include_str!("types.d.ts");
 /// The error of the program, as text.
 #[wasm_bindgen(unchecked_return_type = "Answer")]
 pub fn forecast(
-    name: &str,
-    bytes: &[u8],
+    #[wasm_bindgen(unchecked_param_type = "string")] name: &JsValue,
+    #[wasm_bindgen(unchecked_param_type = "Uint8Array")] bytes: &JsValue,
     #[wasm_bindgen(unchecked_optional_param_type = "Options")] options: &JsValue,
 ) -> Result<JsValue, JsError> {
     asked(options, |options| {
-        let tracks = Tracks::read(name, bytes, &options)?;
+        let name = name.as_string().ok_or("the name of the file is no string")?;
+        let bytes = bytes
+            .dyn_ref::<Uint8Array>()
+            .ok_or("the bytes of the file are no Uint8Array")?;
+        let tracks = Tracks::read(&name, &bytes.to_vec(), &options)?;
         let windows = tracks.windows(tracks.observed.windows.clone(), &options)?;
         let forecasts = tracks::forecasts(&windows, &options)?;
         let lines = tracks::lines(&windows, &forecasts, tracks.observed.clock, &options)?;

@@ -78,9 +78,17 @@ impl Live {
         } else {
             moment
         };
-        let is_exact = |number: &&f64| number.fract() == 0.0 && number.abs() < 1.0 / f64::EPSILON;
-        if let Some(number) = ids.iter().chain([&frame]).find(|number| !is_exact(number)) {
-            return Err(format!("ids and frames must be whole numbers below 2^52, not {number}").into());
+        let is_exact = |number: f64| number.fract() == 0.0 && number.abs() < 1.0 / f64::EPSILON;
+        if let Some(id) = ids.iter().find(|id| !is_exact(**id)) {
+            return Err(format!("ids must be whole numbers below 2^52, not {id}").into());
+        }
+        if !is_exact(frame) {
+            let kind = if self.are_times {
+                "a number of seconds (Date has milliseconds), at most 4e9"
+            } else {
+                "a frame number: whole, and below 2^52"
+            };
+            return Err(format!("the moment is {moment}; it must be {kind}").into());
         }
         let frame = frame as i64;
         let seen = ids

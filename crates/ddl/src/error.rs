@@ -2,6 +2,19 @@
 
 use std::path::PathBuf;
 
+/// An error and its causes, each once.
+pub fn with_causes(error: &dyn std::error::Error) -> String {
+    let mut words = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        if !words.contains(&error.to_string()) {
+            words = format!("{words}: {error}");
+        }
+        cause = error.source();
+    }
+    words
+}
+
 /// Errors of `ddl`. A message states the fault, its place and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

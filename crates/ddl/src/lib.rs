@@ -54,7 +54,7 @@ pub use ddl_core::{
 };
 pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{cuda_status, prepare, thread_pool};
-pub use error::DdlError;
+pub use error::{DdlError, with_causes};
 pub use forecast::certified::{CertificateError, CertifiedForecast};
 pub use forecast::joint::GivenPlan;
 pub use goals::model::GoalModel;
