@@ -8,7 +8,6 @@ pub mod chance;
 pub mod console;
 pub mod crowd;
 pub mod drawn_model;
-pub mod example;
 pub mod failing_model;
 pub mod folder_contents;
 pub mod golden;
