@@ -159,7 +159,7 @@ typedef struct ddl_risks {
 
 // The cells and times of an occupancy.
 typedef struct ddl_cells {
-  // Side of a cell, metres.
+  // Side of a cell, metres; above 0.
   double cell;
   // Seconds between two grids; the first is at the moment itself.
   double every;

@@ -177,7 +177,7 @@ pub struct ddl_risks {
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct ddl_cells<'a> {
-    /// Side of a cell, metres.
+    /// Side of a cell, metres; above 0.
     pub cell: f64,
     /// Seconds between two grids; the first is at the moment itself.
     pub every: f64,

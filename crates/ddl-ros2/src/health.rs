@@ -14,6 +14,8 @@ const KEPT: usize = 1000;
 /// Faults that are told; the others only count.
 const MOST_TOLD: usize = 100;
 
+const NO_TRACKS: &str = "no tracks: check topic, type, domain and quality of service";
+
 /// Levels of `diagnostic_msgs/DiagnosticStatus`.
 const OK: u8 = 0;
 const WARNING: u8 = 1;
@@ -84,12 +86,12 @@ impl Health {
             None => 0,
         };
         self.reported = Some((Instant::now(), self.dropped));
-        let is_stale = self.heard.is_none_or(|heard| heard.elapsed() > STALE);
+        let is_stale = self.heard.get_or_insert_with(Instant::now).elapsed() > STALE;
+        if is_stale {
+            self.warn(NO_TRACKS);
+        }
         let (level, message) = match (is_stale, self.dropped - dropped_before) {
-            (true, _) => (
-                IS_STALE,
-                "no tracks: check topic, type, domain and quality of service".to_owned(),
-            ),
+            (true, _) => (IS_STALE, NO_TRACKS.to_owned()),
             (false, 0) => (OK, "forecasting".to_owned()),
             (false, dropped) => (WARNING, format!("{dropped} frames dropped: {}", self.last_error)),
         };

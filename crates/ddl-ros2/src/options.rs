@@ -13,6 +13,7 @@ use std::path::PathBuf;
 /// Forecast pedestrians in ROS 2: subscribe to tracks, publish where they will be in the next 4.8 s
 #[derive(Debug, Parser)]
 #[command(name = "ddl-ros2", version, allow_negative_numbers = true)]
+#[command(after_help = "Options are also parameters of ROS: --ros-args -p transform_age:=0.5 --params-file FILE")]
 pub(crate) struct Options {
     /// Topic of the tracks; without / at its start it is in the namespace
     #[arg(long, default_value = "/tracks")]
