@@ -90,7 +90,7 @@ fn within_bounds(observed: &[Position], certified: &CertifiedForecast, i: usize)
         let motion = certificate.motion().unwrap();
         prop_assert!((motion.speed.largest - fastest).abs() < 1e-6);
         prop_assert!(motion.speed.bound <= limit(observed));
-        prop_assert!(motion.distance_left.is_some_and(|left| left.largest < 1e-6));
+        prop_assert!(motion.distance_left.largest < 1e-6);
         let goal = forecast.goal(i, k).unwrap();
         let left: Vec<f64> = path.iter().map(|&position| distance(position, goal)).collect();
         let mut steps = left.windows(2);

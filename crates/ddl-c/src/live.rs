@@ -55,12 +55,8 @@ impl Live {
         let frame = if self.has_times { (1e6 * at).round() } else { at };
         // False for NaN.
         if !(frame.fract() == 0.0 && frame.abs() < LARGEST) {
-            let words = if self.has_times {
-                "a number of seconds below 9e9"
-            } else {
-                "a whole number, as `rate` counts frames"
-            };
-            return Err(Failure::invalid(format!("the moment is {at}; it must be {words}")));
+            let right = "it must be a number of seconds below 9e9, or with `rate` a frame number below 2^53";
+            return Err(Failure::invalid(format!("the moment is {at}; {right}")));
         }
         let unit = if self.has_times {
             " s (frames are microseconds)"

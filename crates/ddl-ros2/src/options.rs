@@ -1,5 +1,6 @@
 //! The options, which are the parameters of the node.
 
+use anyhow::Context as _;
 use clap::Parser;
 use clap::builder::PossibleValuesParser;
 use ddl::data::{HORIZON, LiveTracks, TIME_STEP};
@@ -32,7 +33,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "/SPACE", default_value = "/", value_parser = space)]
     pub(crate) namespace: String,
     /// Other name for a topic of the node, such as /tf:=/robot/tf; may be repeated
-    #[arg(long, value_name = "TOPIC:=TOPIC", value_delimiter = ',', value_parser = remapped)]
+    #[arg(long, value_name = "TOPIC:=TOPIC", value_delimiter = ',', value_parser = pair)]
     pub(crate) remap: Vec<(String, String)>,
     /// Frame that does not move, in which forecasts are made
     #[arg(long, default_value = "map")]
@@ -142,9 +143,12 @@ fn space(text: &str) -> Result<String, String> {
     space.ok_or_else(|| "begin it with /".to_owned())
 }
 
-fn remapped(rule: &str) -> Result<(String, String), String> {
-    let (from, to) = rule.split_once(":=").ok_or("give TOPIC:=TOPIC")?;
-    Ok((from.to_owned(), to.to_owned()))
+/// `NAME:=VALUE`, as ROS writes it.
+pub(crate) fn pair(rule: &str) -> anyhow::Result<(String, String)> {
+    let pair = rule
+        .split_once(":=")
+        .map(|(name, value)| (name.to_owned(), value.to_owned()));
+    pair.with_context(|| format!("{rule}: give NAME:=VALUE"))
 }
 
 fn corners(text: &str) -> Result<[f64; 4], String> {

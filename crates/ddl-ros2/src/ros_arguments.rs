@@ -1,6 +1,6 @@
 //! The arguments of ROS, as launch files give them: `--ros-args -r __node:=crowd -p topic:=/people --params-file FILE`.
 
-use crate::options::Options;
+use crate::options::{Options, pair};
 use crate::tell;
 use anyhow::{Context as _, bail, ensure};
 use clap::builder::ValueParser;
@@ -67,13 +67,6 @@ pub(crate) fn parse(mut line: impl Iterator<Item = OsString>) -> anyhow::Result<
         words.extend(option(&name, &value)?);
     }
     Ok(Options::parse_from(words))
-}
-
-fn pair(rule: &str) -> anyhow::Result<(String, String)> {
-    let pair = rule
-        .split_once(":=")
-        .map(|(name, value)| (name.to_owned(), value.to_owned()));
-    pair.with_context(|| format!("{rule}: give NAME:=VALUE"))
 }
 
 /// The option of a rule that gives a topic or the node another name.

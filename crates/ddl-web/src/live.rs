@@ -83,12 +83,8 @@ impl Live {
             return Err(format!("ids must be whole numbers below 2^52, not {id}").into());
         }
         if !is_exact(frame) {
-            let kind = if self.are_times {
-                "a number of seconds (Date has milliseconds), at most 4e9"
-            } else {
-                "a frame number: whole, and below 2^52"
-            };
-            return Err(format!("the moment is {moment}; it must be {kind}").into());
+            let right = "it must be a number of seconds below 4e9, or with fps a frame number below 2^52";
+            return Err(format!("the moment is {moment}; {right}").into());
         }
         let frame = frame as i64;
         let seen = ids

@@ -27,8 +27,7 @@ impl<T: Real> Bounded<T> {
     }
 }
 
-/// Quantities of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. Some
-/// certificates of earlier versions have no `deviation` and `distance_left`.
+/// Quantities of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEvidence<T> {
@@ -37,11 +36,9 @@ pub struct MotionEvidence<T> {
     /// Difference between the speeds of successive steps (m/s).
     pub speed_change: Bounded<T>,
     /// Distance from the straight line between start and goal (m).
-    #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
-    pub deviation: Option<Bounded<T>>,
+    pub deviation: Bounded<T>,
     /// Distance from the goal after the last step (m).
-    #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
-    pub distance_left: Option<Bounded<T>>,
+    pub distance_left: Bounded<T>,
 }
 
 impl<T: Real> MotionEvidence<T> {
@@ -75,33 +72,32 @@ impl<T: Real> MotionEvidence<T> {
                 largest: change,
                 bound: rounded(most_change.min(top), (off + off) / dt),
             },
-            deviation: Some(Bounded {
+            deviation: Bounded {
                 largest: farthest_from_line(path, attractor.goal()),
                 bound: rounded(sideways, off_at_end),
-            }),
-            distance_left: Some(Bounded {
+            },
+            distance_left: Bounded {
                 largest: path.last().map_or(T::zero(), |last| attractor.distance(last)),
                 bound: rounded(out_of_reach(path, attractor, bounds, dt), off_at_end),
-            }),
+            },
         }
     }
 
     pub(super) fn check(&self) -> Result<(), Violation> {
         let named = [
-            ("speed (m/s)", Some(self.speed)),
-            ("change of speed between steps (m/s)", Some(self.speed_change)),
+            ("speed (m/s)", self.speed),
+            ("change of speed between steps (m/s)", self.speed_change),
             ("distance from the straight line (m)", self.deviation),
             ("distance from the goal at the end (m)", self.distance_left),
         ];
-        let exceeded = named.into_iter().find_map(|(figure, bounded)| {
-            let bounded = bounded.filter(|bounded| !bounded.holds())?;
-            Some(Violation::OutOfBounds {
+        match named.into_iter().find(|(_, bounded)| !bounded.holds()) {
+            Some((figure, bounded)) => Err(Violation::OutOfBounds {
                 figure: figure.to_owned(),
                 value: bounded.largest.as_f64(),
                 bound: bounded.bound.as_f64(),
-            })
-        });
-        exceeded.map_or(Ok(()), Err)
+            }),
+            None => Ok(()),
+        }
     }
 }
 

@@ -181,6 +181,6 @@ fn a_goal_out_of_reach_is_reported() {
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4).unwrap();
     let certificate = certificate.within(&path, &attractor, &bounds).unwrap();
     assert_eq!(certificate.verify(), Ok(()));
-    let left = certificate.motion().unwrap().distance_left.unwrap();
+    let left = certificate.motion().unwrap().distance_left;
     assert!((left.largest - 10.4).abs() < 1e-9 && (left.bound - 10.4).abs() < 1e-6);
 }

@@ -102,7 +102,7 @@ impl GoalModel {
             GoalEstimator::new(params, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
         let tracks = estimator.library().tracks();
         let motions = TrainingMotions::learn(tracks, config.star.time_step);
-        let fingerprints = fingerprints_of(&run, tracks)?;
+        let fingerprints = fingerprints_of(&run)?;
         let origin = match (&config.goals.proposal, network) {
             (Some(recipe), Some(network)) => GoalOrigin::Pooled {
                 network,
@@ -446,12 +446,8 @@ fn failed(error: impl std::error::Error + Send + Sync + 'static) -> ForecastErro
     ForecastError::model("goals", error)
 }
 
-/// Of the file, or of the library in runs of earlier versions, which have no such file.
-fn fingerprints_of(run: &RunDirectory, tracks: &[Vec<Position>]) -> Result<TrackFingerprints, DdlError> {
+fn fingerprints_of(run: &RunDirectory) -> Result<TrackFingerprints, DdlError> {
     let path = run.fingerprints();
-    if !path.is_file() {
-        return Ok(TrackFingerprints::of(tracks.iter().map(|track| track.iter().copied())));
-    }
     let bytes = std::fs::read(&path).map_err(|error| DdlError::io(&path, error))?;
     TrackFingerprints::from_bytes(&bytes)
         .ok_or_else(|| DdlError::run(&path, "is damaged; copy it again, or remove it and train again"))
