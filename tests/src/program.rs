@@ -112,7 +112,7 @@ pub fn path() -> &'static Path {
 
 /// A program of the profile of this test, by its path below the build folder, such as `examples/draw_forecast`. It is
 /// built first if it is missing or older than its sources; `target` are the arguments of cargo for it.
-pub(crate) fn built(place: &Path, target: &[&str]) -> PathBuf {
+pub fn built(place: &Path, target: &[&str]) -> PathBuf {
     let mut path = profile_folder().join(place).into_os_string();
     path.push(std::env::consts::EXE_SUFFIX);
     let path = PathBuf::from(path);
