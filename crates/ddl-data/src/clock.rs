@@ -193,6 +193,19 @@ impl Clock {
         }
     }
 
+    /// A tick in words, such as `frame 12`, `2.3 s` or a date: each tick has its own.
+    pub fn words(self, tick: i64) -> String {
+        let number = self.number(tick);
+        match self.count {
+            Count::Frames { .. } => format!("frame {number}"),
+            Count::Stamps(TimeUnit::Seconds) => format!("{number} s"),
+            Count::Stamps(TimeUnit::Milliseconds) => format!("{number} ms"),
+            Count::Stamps(TimeUnit::Microseconds) => format!("{number} us"),
+            Count::Stamps(TimeUnit::Nanoseconds) => format!("{number} ns"),
+            Count::Stamps(TimeUnit::Dates) => number.to_string(),
+        }
+    }
+
     /// The frame number or time of a tick.
     pub fn number(self, tick: i64) -> FrameNumber {
         let unit = match self.count {

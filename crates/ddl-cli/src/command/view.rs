@@ -63,8 +63,7 @@ impl View {
         let forecasts: Vec<&Forecast> = forecasts.iter().collect();
         let name = self.tracks.file().file_name().unwrap_or_default();
         let warning = observed.warning.as_ref().map(ToString::to_string);
-        let frame = |frame| observed.clock.number(frame).nearest();
-        let page = player.to_html(&forecasts, &name.to_string_lossy(), warning.as_deref(), frame)?;
+        let page = player.to_html(&forecasts, &name.to_string_lossy(), warning.as_deref(), observed.clock)?;
         let path = self.output.unwrap_or_else(|| {
             let stem = self.tracks.file().file_stem().unwrap_or_default();
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))

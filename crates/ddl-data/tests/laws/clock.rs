@@ -39,7 +39,7 @@ proptest! {
         prop_assert!(off <= if ticks == 1 { 0.005 } else { f64::max(1e-4, rounded) } + 1e-12, "{clock:?} {off}");
         let tick = clock.tick(frame).unwrap();
         prop_assert_eq!(tick, frame * ticks);
-        prop_assert_eq!(clock.number(tick).to_string(), frame.to_string());
+        prop_assert_eq!(clock.words(tick), format!("frame {frame}"));
         let next: f64 = clock.number(tick + 1).to_string().parse().unwrap();
         prop_assert!((next - frame as f64 - 1.0 / ticks as f64).abs() < 1e-6);
     }
@@ -153,7 +153,7 @@ fn times_are_exact_to_a_microsecond_and_print_back() {
         assert_eq!(recording.frames()[0].to_string(), expected, "{case}");
         let clock = recording.stated_clock().unwrap().unwrap();
         assert_eq!(
-            (clock.frame_step(), clock.number(recording.frames()[0]).to_string()),
+            (clock.frame_step(), clock.words(recording.frames()[0])),
             (400_000, printed.to_owned())
         );
         let mut stream = FrameReader::new(text.as_bytes(), "f");

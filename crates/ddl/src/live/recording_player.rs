@@ -4,7 +4,7 @@ use crate::error::DdlError;
 use crate::model::ddl::Ddl;
 use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
 use ddl_core::{Forecast, Forecaster as _};
-use ddl_data::{OBSERVED, Recording, Window};
+use ddl_data::{Clock, OBSERVED, Recording, Window};
 use ddl_eval::EvaluationError;
 use ddl_report::ForecastSnapshot;
 use ddl_report::page::Viewer;
@@ -33,7 +33,7 @@ impl RecordingPlayer<'_> {
     }
 
     /// The page, from one forecast for each window in [`shown`](Self::shown). `name` is the title of the recording,
-    /// `warning` describes a fault of it, and `frame` converts a frame number of the recording to one of its file.
+    /// `warning` describes a fault of it, and `clock` is that of its frames or times.
     ///
     /// # Errors
     /// [`DdlError::Evaluation`] or [`DdlError::Report`] if a forecast does not fit its window, or if there are none.
@@ -42,14 +42,15 @@ impl RecordingPlayer<'_> {
         forecasts: &[&Forecast],
         name: &str,
         warning: Option<&str>,
-        frame: impl Fn(i64) -> i64,
+        clock: Clock,
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
         let futures = recording.futures();
         let moments = shown.iter().zip(forecasts).map(|(window, forecast)| {
             let seen = futures.of(window);
             let mut moment = ForecastSnapshot::under_way(model.name(), window, forecast, &seen)?;
-            moment.frame = frame(window.frames()[OBSERVED - 1]);
+            moment.frame = clock.number(moment.frame).nearest();
+            moment.when = Some(clock.words(window.frames()[OBSERVED - 1]));
             if self.joint {
                 moment.joint = true;
                 moment.groups = ddl_scene::groups(window);
