@@ -192,7 +192,7 @@ impl TrackColumns {
         let has_time = || {
             fields
                 .get(self.header.frame)
-                .is_some_and(|time| time.parse::<f64>().is_ok())
+                .is_some_and(|time| self.separator.with_point(time).parse::<f64>().is_ok())
         };
         is_comment(text) && !(fields.len() == self.names.len() && has_time())
     }
@@ -232,7 +232,8 @@ impl TrackColumns {
             let time = fields
                 .get(self.header.frame)
                 .filter(|_| self.header.time == TimeColumn::Frame);
-            if let Some(time) = time.filter(|time| field::has_fraction(time) && !is_comment(text)) {
+            let has_fraction = |time: &&Cow<'_, str>| field::has_fraction(&self.separator.with_point(time));
+            if let Some(time) = time.filter(|time| has_fraction(time) && !is_comment(text)) {
                 self.look_at(Some(time));
                 return Ok(None);
             }
@@ -296,6 +297,8 @@ impl TrackColumns {
 
     /// Finds out what the column of the time counts from a time: a first one, or one with a fraction.
     fn look_at(&mut self, time: Option<&str>) {
+        let time = time.map(|time| self.separator.with_point(time));
+        let time = time.as_deref();
         let unit = match self.header.time {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Time => time.map(field::unit_of),
@@ -334,7 +337,8 @@ impl TrackColumns {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Frame | TimeColumn::Time => None,
         };
-        let frame = place(self.header.frame).read(field::frame(&fields[self.header.frame], "frame", unit))?;
+        let time = self.separator.with_point(&fields[self.header.frame]);
+        let frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
         let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
@@ -374,13 +378,7 @@ impl TrackColumns {
         let per_metre = self.header.per_metre.unwrap_or(1.0);
         let axes = ["x", "y"];
         let number = |index: usize, name: &str| {
-            // Where no comma stands between fields, it is a decimal comma.
-            let is_decimal = self.separator != Separator::Comma && fields[index].contains(',');
-            let coordinate = if is_decimal {
-                field::coordinate(&fields[index].replacen(',', ".", 1), name, per_metre)
-            } else {
-                field::coordinate(&fields[index], name, per_metre)
-            };
+            let coordinate = field::coordinate(&self.separator.with_point(&fields[index]), name, per_metre);
             FilePlace::field(line, index + 1).read(coordinate)
         };
         match self.header.place {

@@ -143,11 +143,8 @@ fn times_are_exact_to_a_microsecond_and_print_back() {
         let [header, time, expected, printed] = case.split("=> ").map(str::trim).collect::<Vec<_>>()[..] else {
             panic!("{case}");
         };
-        let text = if header.is_empty() {
-            format!("{time}\n")
-        } else {
-            format!("{header}\n{time},7,0,0\n")
-        };
+        let rest = if header.contains(',') { ",7,0,0" } else { "" };
+        let text = format!("{header}\n{time}{rest}\n").trim_start().to_owned();
         let format = Format::guess("".as_ref(), text.as_bytes()).unwrap();
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         assert_eq!(recording.frames()[0].to_string(), expected, "{case}");
