@@ -38,12 +38,12 @@ const NAMES: [(Role, &str); 13] = [
     ),
     (
         Role::X,
-        "x posx posex posepositionx xpos positionx xposition centerx xcenter centrex xcentre worldx xworld px xest \
+        "x posx posex posepositionx poseposepositionx xpos positionx xposition centerx xcenter centrex xcentre worldx xworld px xest \
          coordx xcoord locx xloc",
     ),
     (
         Role::Y,
-        "y posy posey posepositiony ypos positiony yposition centery ycenter centrey ycentre worldy yworld py yest \
+        "y posy posey posepositiony poseposepositiony ypos positiony yposition centery ycenter centrey ycentre worldy yworld py yest \
          coordy ycoord locy yloc",
     ),
     (Role::Class, "class classname label type agenttype objecttype category"),
@@ -193,6 +193,20 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
         }),
         (_, Some(_)) => None,
     }
+}
+
+/// The columns of a stamp in two numbers, seconds and nanoseconds, with the same words before: those of ROS.
+pub(super) fn stamp_in_two(names: &[&str]) -> Option<[usize; 2]> {
+    let of = |units: &str| -> Vec<(usize, Vec<String>)> {
+        let parts = names.iter().map(|name| words(name)).enumerate();
+        let parts = parts.filter_map(|(index, mut words)| is_one_of(units, &words.pop()?).then_some((index, words)));
+        parts.collect()
+    };
+    let rest = of("nanosec nanosecs nsec nsecs");
+    of("sec secs").into_iter().find_map(|(seconds, before)| {
+        let (nanoseconds, _) = rest.iter().find(|(_, other)| *other == before)?;
+        Some([seconds, *nanoseconds])
+    })
 }
 
 /// The words of a name in small letters: `trackId`, `track_id` and `Track ID` have the words track and id.

@@ -72,6 +72,14 @@ fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
     Ok(stamp as i64)
 }
 
+/// Microseconds of the nanoseconds beside whole seconds.
+pub(super) fn microseconds(text: &str) -> Result<i64, String> {
+    let nanoseconds = integer(text, "nanoseconds")?;
+    let is_part = (0..1_000_000_000).contains(&nanoseconds);
+    let problem = || format!("nanoseconds beside seconds must be below 10^9, found {nanoseconds}");
+    is_part.then_some(nanoseconds / 1000).ok_or_else(problem)
+}
+
 /// Microseconds since 1970 of a date with a time.
 fn date(text: &str) -> Option<i64> {
     let text = text.replacen(' ', "T", 1);

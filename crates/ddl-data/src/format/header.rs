@@ -4,7 +4,7 @@ use crate::clock::TimeUnit;
 use std::collections::BTreeMap;
 
 use crate::format::choice::ColumnChoice;
-use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, is_one_of, named, words};
+use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, is_one_of, named, stamp_in_two, words};
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
 
@@ -32,6 +32,8 @@ pub(super) enum TimeColumn {
 pub(super) struct Header {
     pub(super) time: TimeColumn,
     pub(super) frame: usize,
+    /// Nanoseconds beside whole seconds, which are the first column.
+    pub(super) nanoseconds: Option<usize>,
     pub(super) pedestrian: usize,
     pub(super) place: Place,
     /// Units of length per metre; `None` for pixels.
@@ -73,6 +75,10 @@ impl Header {
             found: Vec::new(),
             unknown: Vec::new(),
         };
+        let stamp = stamp_in_two(names);
+        let has_no_time = !names
+            .iter()
+            .any(|name| named(0, name).is_some_and(|named| named.role == Role::Time));
         for (index, name) in names.iter().enumerate() {
             let chosen = choice
                 .roles
@@ -80,7 +86,12 @@ impl Header {
                 .find(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
             // x and y that are given stand for a box as well, and a box for x and y.
             let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
-            let by_name = named(index, name);
+            let is_stamp = has_no_time && stamp.is_some_and(|[seconds, _]| seconds == index);
+            let by_name = if is_stamp {
+                Some(chosen_as(Role::Time, index, name))
+            } else {
+                named(index, name)
+            };
             match (chosen, by_name) {
                 (Some(&(role, _)), _) => roles.found.push(chosen_as(role, index, name)),
                 (None, Some(named)) if !is_given(named.role) => roles.found.push(named),
@@ -89,6 +100,15 @@ impl Header {
             }
         }
         let mut header = roles.header(choice)?;
+        if let Some([_, rest]) = stamp.filter(|[seconds, _]| header.frame == *seconds) {
+            header.time = TimeColumn::Known(Some(TimeUnit::Seconds));
+            header.nanoseconds = Some(rest);
+            let both = [header.frame, rest].map(|index| quoted(names[index]));
+            header.unread.retain(|name| *name != both[1]);
+            header
+                .remarks
+                .push(format!("the times are {} and {} together", both[0], both[1]));
+        }
         if choice.time_unit.is_some() {
             header.time = TimeColumn::Known(choice.time_unit);
         }
@@ -139,6 +159,7 @@ impl Roles<'_> {
                 (_, Some(unit)) => TimeColumn::Known(Some(unit)),
             },
             frame: time.index,
+            nanoseconds: None,
             pedestrian: pedestrian.index,
             place,
             has_unit: is_point && matches!(of_length, Some(LengthUnit::PerMetre(_))),

@@ -149,6 +149,7 @@ impl TrackColumns {
                 _ => TimeColumn::Frame,
             },
             frame: layout.frame,
+            nanoseconds: None,
             pedestrian: layout.pedestrian,
             place: layout.place,
             per_metre: choice.unit.map_or(layout.per_metre, LengthUnit::per_metre),
@@ -338,7 +339,10 @@ impl TrackColumns {
             TimeColumn::Frame | TimeColumn::Time => None,
         };
         let time = self.separator.with_point(&fields[self.header.frame]);
-        let frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
+        let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
+        if let Some(index) = self.header.nanoseconds {
+            frame += place(index).read(field::microseconds(&fields[index]))?;
+        }
         let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
