@@ -341,7 +341,9 @@ impl TrackColumns {
         let time = self.separator.with_point(&fields[self.header.frame]);
         let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
         if let Some(index) = self.header.nanoseconds {
-            frame += place(index).read(field::microseconds(&fields[index]))?;
+            frame += place(index)
+                .read(field::integer(&fields[index], "nanoseconds"))?
+                .div_euclid(1000);
         }
         let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
@@ -361,15 +363,12 @@ impl TrackColumns {
             place(index).read(field::number(&fields[index], &self.names[index]))?;
         }
         self.check_constant(fields, line)?;
-        let scene = match self.header.scene {
-            None => None,
-            Some(index) => {
-                let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
-                Some(place(index).read(scene)?)
-            }
-        };
+        let scene = self.header.scene.map(|index| {
+            let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
+            place(index).read(scene)
+        });
         Ok(Some(TrackRow {
-            scene,
+            scene: scene.transpose()?,
             frame,
             unit,
             pedestrian,
@@ -380,13 +379,12 @@ impl TrackColumns {
 
     fn position(&self, fields: &[Cow<'_, str>], line: usize) -> Result<Position, Misread> {
         let per_metre = self.header.per_metre.unwrap_or(1.0);
-        let axes = ["x", "y"];
         let number = |index: usize, name: &str| {
             let coordinate = field::coordinate(&self.separator.with_point(&fields[index]), name, per_metre);
             FilePlace::field(line, index + 1).read(coordinate)
         };
         match self.header.place {
-            Place::Point([x, y]) => Ok([number(x, axes[0])?, number(y, axes[1])?]),
+            Place::Point([x, y]) => Ok([number(x, "x")?, number(y, "y")?]),
             Place::Centre(columns) | Place::FootOfCorners(columns) => {
                 let [left, top, right, bottom] = columns.map(|index| number(index, &self.names[index]));
                 let (left, top, right, bottom) = (left?, top?, right?, bottom?);
