@@ -37,12 +37,13 @@ pub(crate) fn view(name: &str, bytes: &[u8], options: &Options) -> Result<JsValu
     let forecasts = tracks::forecasts(&windows, options)?;
     let warning = observed.warning.as_ref().map(ToString::to_string);
     let every: Vec<_> = forecasts.iter().collect();
+    let (lines, notes) = tracks.answer(&windows, &forecasts, options)?;
     let view = View {
         data: observed.recording.summary(),
         page: player.to_html(&every, name, warning.as_deref(), observed.clock)?,
         place: tracks.place()?,
-        lines: tracks::lines(&windows, &forecasts, observed.clock, options)?,
-        notes: tracks.told,
+        notes,
+        lines,
     };
     parse(&serde_json::to_string(&view)?)
 }

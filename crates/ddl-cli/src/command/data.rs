@@ -203,26 +203,17 @@ fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String>
 
 /// The rate of the rows of a pedestrian, its jitter, and the noise.
 fn rows_in_words(s: &Summary) -> String {
-    s.rows_a_second.map_or_else(
-        || "no pedestrian has two".to_owned(),
-        |rate| {
-            let jitter = if s.jitter * rate > EVEN_CLOCK {
-                format!(", ± {:.0} ms", 1e3 * s.jitter)
-            } else {
-                String::new()
-            };
-            let clocks = if s.common_frames {
-                ""
-            } else {
-                ", each pedestrian on its own clock"
-            };
-            let noise = if s.noise > EXACT {
-                format!("noise {:.0} cm", 100.0 * s.noise)
-            } else {
-                "noise below 1 cm".to_owned()
-            };
-            format!("{rate:.3} a second{jitter}{clocks}, {noise}")
-        },
+    let Some(rate) = s.rows_a_second else {
+        return "no pedestrian has two".to_owned();
+    };
+    let jitter = (s.jitter * rate > EVEN_CLOCK).then(|| format!(", ± {:.0} ms", 1e3 * s.jitter));
+    let clocks = (!s.common_frames).then_some(", each pedestrian on its own clock");
+    let noise = (s.noise > EXACT).then(|| format!("{:.0} cm", 100.0 * s.noise));
+    format!(
+        "{rate:.3} a second{}{}, noise {}",
+        jitter.unwrap_or_default(),
+        clocks.unwrap_or_default(),
+        noise.as_deref().unwrap_or("below 1 cm")
     )
 }
 

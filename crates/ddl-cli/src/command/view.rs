@@ -69,7 +69,8 @@ impl View {
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
         });
         output::write_output(Some(&path), &page)?;
-        if let Some(warning) = observed.misfits() {
+        let unfamiliar = player.unfamiliar(&forecasts, observed.clock);
+        for warning in unfamiliar.into_iter().chain(observed.misfits()) {
             tell(format_args!("{warning}"));
         }
         if output::file_of(Some(&path)).is_none() {

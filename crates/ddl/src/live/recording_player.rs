@@ -2,7 +2,8 @@
 
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
-use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
+use crate::tracks::moment::Moment;
+use crate::tracks::unfamiliar::UnfamiliarMotions;
 use ddl_core::{Forecast, Forecaster as _};
 use ddl_data::{Clock, OBSERVED, Recording, Window};
 use ddl_eval::EvaluationError;
@@ -30,6 +31,15 @@ impl RecordingPlayer<'_> {
         let count = self.windows.len().min(self.most);
         let last = |k: usize| k * self.windows.len() / count - 1;
         (1..=count).map(|k| self.windows[last(k)].clone()).collect()
+    }
+
+    /// A warning of motions unlike the training motions; arguments as those of [`to_html`](Self::to_html).
+    pub fn unfamiliar(&self, forecasts: &[&Forecast], clock: Clock) -> Option<String> {
+        let (shown, mut motions) = (self.shown(), UnfamiliarMotions::default());
+        for (window, forecast) in shown.iter().zip(forecasts) {
+            motions.add(&[Moment::new(window, forecast, clock)]);
+        }
+        motions.warning()
     }
 
     /// The page, from one forecast for each window in [`shown`](Self::shown). `name` is the title of the recording,
@@ -77,7 +87,7 @@ impl RecordingPlayer<'_> {
             model.goal_model().words()
         )];
         notes.extend(certificates(forecasts));
-        notes.extend(unfamiliar(forecasts));
+        notes.extend(self.unfamiliar(forecasts, clock).map(|warning| warning + "."));
         let viewer = Viewer {
             title: recording.name(),
             lead: &lead,
@@ -88,33 +98,13 @@ impl RecordingPlayer<'_> {
     }
 }
 
-fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
-    let familiarities = forecasts
-        .iter()
-        .flat_map(|forecast| (0..forecast.pedestrians()).filter_map(move |i| forecast.familiarity(i)));
-    let unlike = familiarities
-        .clone()
-        .filter(|&familiarity| familiarity < UNFAMILIAR_THRESHOLD)
-        .count();
-    (unlike > 0).then(|| {
-        format!(
-        "{unlike} of {} motions are unlike the training motions (familiarity below {}): their forecasts use little of \
-         the network, and their weights are flatter.",
-            familiarities.count(),
-            UNFAMILIAR_THRESHOLD
-        )
-    })
-}
-
 fn certificates(forecasts: &[&Forecast]) -> Option<String> {
-    let verdicts: Vec<bool> = forecasts
-        .iter()
-        .flat_map(|forecast| {
-            let pedestrians = 0..forecast.pedestrians();
-            pedestrians.flat_map(move |i| (0..forecast.hypotheses()).map(move |k| forecast.certified(i, k)))
-        })
-        .flatten()
-        .collect();
+    let mut verdicts = Vec::new();
+    for forecast in forecasts {
+        for i in 0..forecast.pedestrians() {
+            verdicts.extend((0..forecast.hypotheses()).filter_map(|k| forecast.certified(i, k)));
+        }
+    }
     let held = verdicts.iter().filter(|&&holds| holds).count();
     (!verdicts.is_empty()).then(|| {
         format!(

@@ -2,8 +2,8 @@
 
 use crate::tracks::timed::many_frames;
 use ddl_data::{
-    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
-    PlausibilityWarning, Recording, Window,
+    Clock, Completeness, Fastest, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality,
+    PedestrianId, PlausibilityWarning, Recording, Window,
 };
 use std::collections::BTreeSet;
 
@@ -157,17 +157,12 @@ pub fn steps_in_words(clock: Clock) -> String {
 }
 
 /// The warning with frame numbers of the file.
-pub fn in_frames(clock: Clock, warning: PlausibilityWarning) -> PlausibilityWarning {
-    match warning {
-        PlausibilityWarning::Jump(mut fastest) => {
-            fastest.frame = clock.number(fastest.frame).nearest();
-            PlausibilityWarning::Jump(fastest)
-        }
-        PlausibilityWarning::NoSteps { frame_step } => PlausibilityWarning::NoSteps {
-            frame_step: clock.number(frame_step).nearest(),
-        },
-        other => other,
+pub fn in_frames(clock: Clock, mut warning: PlausibilityWarning) -> PlausibilityWarning {
+    use PlausibilityWarning::{Jump, NoSteps};
+    if let Jump(Fastest { frame: tick, .. }) | NoSteps { frame_step: tick } = &mut warning {
+        *tick = clock.number(*tick).nearest();
     }
+    warning
 }
 
 /// A sentence about rows that do not fit their tracks. With a warning of fast steps, nearly all positions are in other
