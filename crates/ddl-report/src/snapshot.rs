@@ -131,9 +131,8 @@ impl ForecastSnapshot {
             }
         }
         let seen: Vec<&[Position]> = seen.iter().map(Vec::as_slice).collect();
-        if let Some(longest) = seen.iter().map(|path| path.len()).max()
-            && longest > HORIZON
-        {
+        let longest = seen.iter().map(|path| path.len()).max().unwrap_or_default();
+        if longest > HORIZON {
             return Err(EvaluationError::Seen { longest });
         }
         let fold = window.recording().to_owned();

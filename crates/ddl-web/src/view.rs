@@ -35,12 +35,11 @@ pub(crate) fn view(name: &str, bytes: &[u8], options: &Options) -> Result<JsValu
     };
     let windows = tracks.windows(player.shown(), options)?;
     let forecasts = tracks::forecasts(&windows, options)?;
-    let warning = observed.warning.as_ref().map(ToString::to_string);
     let every: Vec<_> = forecasts.iter().collect();
     let (lines, notes) = tracks.answer(&windows, &forecasts, options)?;
     let view = View {
         data: observed.recording.summary(),
-        page: player.to_html(&every, name, warning.as_deref(), observed.clock)?,
+        page: player.to_html(&every, name, observed.warning.as_ref(), observed.clock)?,
         place: tracks.place()?,
         notes,
         lines,

@@ -221,27 +221,33 @@ fn rows_in_words(s: &Summary) -> String {
 fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Clock) -> std::fmt::Result {
     let speed = match (s.median_speed, &s.fastest) {
         (Some(median), Some(fastest)) => format!(
-            "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, frame {})",
+            "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, {})",
             fastest.speed,
             fastest.pedestrian,
-            clock.number(fastest.frame)
+            clock.words(fastest.frame)
         ),
         _ => "unknown: no successive positions".to_owned(),
     };
     let gaps = s.longest_hole.as_ref().map_or_else(String::new, |gap| {
         format!(
-            ", the longest {:.1} s (pedestrian {}, after frame {})",
+            ", the longest {:.1} s (pedestrian {}, after {})",
             gap.seconds,
             gap.pedestrian,
-            clock.number(gap.after)
+            clock.words(gap.after)
         )
     });
+    let span = if clock.counts_times() {
+        format!("{} to {}", clock.words(s.first_frame), clock.words(s.last_frame))
+    } else {
+        let [first, last] = [s.first_frame, s.last_frame].map(|frame| clock.number(frame));
+        format!("frames {first} to {last} ({} per step of 0.4 s)", clock.step_number())
+    };
     let rows = rows_in_words(s);
     let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
     writeln!(
         out,
         "\x20 observed     {}, {}\n\
-         \x20 time         {:.1} s, frames {} to {} ({} per step of 0.4 s)\n\
+         \x20 time         {:.1} s, {span}\n\
          \x20 area         x {:.2} to {:.2} m, y {:.2} to {:.2} m\n\
          \x20 speed        {speed}\n\
          \x20 rows         {rows}\n\
@@ -251,9 +257,6 @@ fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Cl
         many(s.pedestrians, "pedestrian", "pedestrians"),
         many(s.observations, "position", "positions"),
         s.seconds,
-        clock.number(s.first_frame),
-        clock.number(s.last_frame),
-        clock.step_number(),
         s.low[0],
         s.high[0],
         s.low[1],

@@ -242,11 +242,8 @@ impl Roles<'_> {
     fn not_there(&self, choice: &ColumnChoice) -> Vec<Fault> {
         let is_there = |name: &str| self.names.iter().any(|column| column.eq_ignore_ascii_case(name));
         let chosen = choice.roles.iter().map(|(_, name)| name).filter(|name| !is_there(name));
-        let kept = choice
-            .keep
-            .iter()
-            .map(|(name, _)| name)
-            .filter(|name| self.kept(name).is_none());
+        let keep = choice.keep.iter().map(|(name, _)| name);
+        let kept = keep.filter(|name| self.kept(name).is_none());
         let fault = |name: &String| (None, format!("there is no column {:?}", quoted(name)));
         chosen.chain(kept).map(fault).collect()
     }

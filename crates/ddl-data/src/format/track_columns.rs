@@ -90,16 +90,12 @@ impl TrackColumns {
             return Ok((Self::named(header, names, Separator::of_numbers(first), choice), false));
         }
         let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
-        match Header::of(&names, choice) {
-            Ok(header) => {
-                let names = names.iter().map(|&name| name.to_owned()).collect();
-                Ok((Self::named(header, names, separator, choice), true))
-            }
-            Err((field, problem)) => {
-                let place = field.map_or(FilePlace::line(line), |index| FilePlace::field(line, index + 1));
-                Err(place.wrong(problem))
-            }
-        }
+        let header = Header::of(&names, choice).map_err(|(field, problem)| {
+            let place = field.map_or(FilePlace::line(line), |index| FilePlace::field(line, index + 1));
+            place.wrong(problem)
+        })?;
+        let names = names.iter().map(|&name| name.to_owned()).collect();
+        Ok((Self::named(header, names, separator, choice), true))
     }
 
     fn named(header: Header, names: Vec<String>, separator: Separator, choice: &ColumnChoice) -> Self {

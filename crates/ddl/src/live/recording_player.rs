@@ -5,7 +5,7 @@ use crate::model::ddl::Ddl;
 use crate::tracks::moment::Moment;
 use crate::tracks::unfamiliar::UnfamiliarMotions;
 use ddl_core::{Forecast, Forecaster as _};
-use ddl_data::{Clock, OBSERVED, Recording, Window};
+use ddl_data::{Clock, OBSERVED, PlausibilityWarning, Recording, Window};
 use ddl_eval::EvaluationError;
 use ddl_report::ForecastSnapshot;
 use ddl_report::page::Viewer;
@@ -51,7 +51,7 @@ impl RecordingPlayer<'_> {
         &self,
         forecasts: &[&Forecast],
         name: &str,
-        warning: Option<&str>,
+        warning: Option<&PlausibilityWarning>,
         clock: Clock,
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
