@@ -6,7 +6,7 @@ use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model, folder_contents, own_tracks};
 
 /// Small files of the folder, as they are in it.
-const FILES: [(&str, &str); 18] = [
+const FILES: [(&str, &str); 19] = [
     ("star/zara01.csv", ""),
     ("H.txt", "1 0 0\n0 1 0\n0 0 1\n"),
     ("results/report.json", "{}"),
@@ -19,6 +19,7 @@ const FILES: [(&str, &str); 18] = [
     ("no_y.csv", "t,x\n0,1\n"),
     ("more.csv", "t,x,y,z\n0,1,1,1\n"),
     ("header.csv", "t,x,y\n"),
+    ("one_time.csv", "t,id,x,y\n0.4,1,0,0\n"),
     ("text.csv", "t,x,y\n0,1,left\n"),
     ("nan.csv", "t,x,y\n0,NaN,1\n"),
     ("order.csv", "t,x,y\n1,1,1\n0,1,1\n"),

@@ -135,6 +135,8 @@ fn carried_pedestrians_keep_their_words() {
     let lines: Vec<Value> = json_lines(&file);
     let names: BTreeSet<&str> = lines.iter().filter_map(|line| line["pedestrian"].as_str()).collect();
     assert_eq!((names, lines.len()), (BTreeSet::from(["anna", "bob"]), 22 + 21));
+    let _ = place.ok("view two.csv --no-open -o two.html");
+    assert!(place.text("two.html").contains("\"when\":\"1.2 s\""));
 }
 
 #[test]
@@ -231,6 +233,7 @@ fn a_page_shows_the_moments_of_own_tracks() {
     let count = |moment: usize, name: &str| moments[moment]["pedestrians"][0][name].as_array().unwrap().len();
     assert_eq!(moments.len(), 5);
     assert_eq!(moments[4]["frame"], 14 * own_tracks::FRAME_STEP);
+    assert_eq!(moments[4]["when"], "frame 140");
     assert_eq!((count(4, "truth"), count(4, "paths")), (0, 20));
     // The first of five is the third of fourteen: seen for 3 frames, with a known future.
     assert_eq!(moments[0]["pedestrians"][0]["quality"]["unseen"], 5);

@@ -73,6 +73,22 @@ test("forecasts of a file are those of the program", async () => {
   }
 });
 
+test("unfamiliar motions are told as by the program, live once", () => {
+  const unlike = ["frame,pedestrian,x,y"];
+  for (let t = 0; t < 12; t += 1) unlike.push(`${t},4,${t},${2 * (t % 2)}`);
+  const text = `${unlike.join("\n")}\n`;
+  const of = (notes) => notes.filter((note) => note.includes("unlike the training motions"));
+  const { notes } = forecast("unlike.csv", Buffer.from(text), { fps: 2.5 });
+  assert.equal(of(notes).length, 1);
+  const place = new Live({ fps: 2.5 });
+  const told = unlike.slice(1).flatMap((row) => {
+    const [frame, id, x, y] = row.split(",").map(Number);
+    return place.observe(frame, Float64Array.of(id), Float64Array.of(x, y)).notes;
+  });
+  place.free();
+  assert.equal(of(told).length, 1);
+});
+
 test("live forecasts are those of the program", () => {
   const text = "frame,pedestrian,x,y\n" + rows.map((row) => row.join(",")).join("\n") + "\n";
   for (const [options, words] of [[{}, []], [{ joint: true }, ["--joint"]], [{ region: [0.9] }, ["--region", "0.9"]]]) {

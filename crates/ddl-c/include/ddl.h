@@ -77,7 +77,7 @@ typedef struct ddl_live_options {
   double rate;
   // The file of the memory of the place, which is made if there is none; null without a memory.
   const char *memory;
-  // Only pedestrians tracked for 2.8 s.
+  // Only pedestrians tracked for all 8 steps.
   bool whole;
   // For so long (s, 0 to 2) a pedestrian without a new row is carried on; null: for 0.4 s, or as its rows come.
   const double *max_age;

@@ -212,7 +212,7 @@ struct LiveOptions {
     double rate = 0.0;
     /// The file of the memory of the place; empty without one.
     std::string memory{};
-    /// Only pedestrians tracked for 2.8 s.
+    /// Only pedestrians tracked for all 8 steps.
     bool whole = false;
     /// For so long (s) a pedestrian without a new row is carried on.
     std::optional<double> max_age{};

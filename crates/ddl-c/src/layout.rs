@@ -83,7 +83,7 @@ pub struct ddl_live_options<'a> {
     pub rate: f64,
     /// The file of the memory of the place, which is made if there is none; null without a memory.
     pub memory: *const c_char,
-    /// Only pedestrians tracked for 2.8 s.
+    /// Only pedestrians tracked for all 8 steps.
     pub whole: bool,
     /// For so long (s, 0 to 2) a pedestrian without a new row is carried on; null: for 0.4 s, or as its rows come.
     pub max_age: Option<&'a f64>,

@@ -13,8 +13,7 @@ use std::path::{Path, PathBuf};
 /// The tracks to read, and their units.
 #[derive(Debug, Args)]
 pub(crate) struct TrackOptions {
-    /// Tracks: csv with the header frame,pedestrian,x,y in metres (or time, in seconds, instead of frame); the rows of
-    /// a pedestrian are 0.4 s apart unless --fps or --dt is given
+    /// Tracks: csv with the header frame,pedestrian,x,y in metres, or time (seconds or dates) instead of frame
     ///
     /// Also TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, recognised by extension and first
     /// lines; MCAP files and folders of rosbag2. `ddl forecast -` reads the lines of a live tracker.
@@ -22,7 +21,7 @@ pub(crate) struct TrackOptions {
     file: PathBuf,
     #[command(flatten)]
     pub(crate) units: Units,
-    /// Only pedestrians tracked for all 8 observed steps, 2.8 s
+    /// Only pedestrians tracked for all 8 observed steps, 2.8 s from the first to the last
     ///
     /// By default, pedestrians with 2 or more rows are forecast too. Their motion is continued backwards before the
     /// first row; the column `unseen` counts such steps.
@@ -106,9 +105,7 @@ pub(crate) fn tell_what_was_estimated(observed: &ObservedTracks) {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
-    if (0.0..=LiveTracks::LONGEST_GAP).contains(&number) {
-        Ok(number)
-    } else {
-        Err(format!("must be a number from 0 to {}", LiveTracks::LONGEST_GAP))
-    }
+    let is_right = (0.0..=LiveTracks::LONGEST_GAP).contains(&number);
+    let problem = || format!("must be a number from 0 to {}", LiveTracks::LONGEST_GAP);
+    is_right.then_some(number).ok_or_else(problem)
 }

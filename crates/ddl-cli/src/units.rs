@@ -12,15 +12,15 @@ use std::path::{Path, PathBuf};
 /// The units of frame numbers and positions: from options, else from the file, else from the run.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Units {
-    /// Frame numbers per second, such as 25 or 23.976 [default: the rate in TrajNet++ files, else that of the run's
-    /// training]
+    /// Frame numbers per second, such as 25 or 23.976; times need none [default: that in the file, else that of the
+    /// run's training, else the most common difference between two rows of a pedestrian counts as 0.4 s]
     #[arg(long, conflicts_with_all = ["dt", "frame_step"], value_parser = positive, allow_negative_numbers = true)]
     fps: Option<f64>,
     /// Seconds between consecutive frame numbers, such as 0.1
     #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     dt: Option<f64>,
-    /// Frame numbers in 0.4 s [default: the most common difference between two rows of a pedestrian]
+    /// Frame numbers in 0.4 s [default: as of --fps]
     #[arg(long, value_parser = clap::value_parser!(i64).range(1..=1 << 31), allow_negative_numbers = true)]
     frame_step: Option<i64>,
     /// Positions are in pixels: file with the homography to metres, three lines of three numbers; `none` for metres
@@ -167,11 +167,8 @@ impl Units {
 
     /// A note about units taken from the run; `rate`: whether no file gives its rate.
     pub(crate) fn note_of_run(&self, rate: bool) -> Option<String> {
-        let rate = if rate && self.rate_given().is_none() {
-            self.remembered.rate_option()
-        } else {
-            None
-        };
+        let rate = rate && self.rate_given().is_none();
+        let rate = self.remembered.rate_option().filter(|_| rate);
         let positions = self.homography.is_none() && self.remembered.homography.is_some();
         let taken = rate.into_iter().chain(positions.then(|| "its homography".to_owned()));
         let taken: Vec<String> = taken.collect();
@@ -227,9 +224,9 @@ impl Units {
             Some(Some(("class", class))) => Some(class.to_owned()),
             Some(_) => bail!("of MCAP, --keep chooses a class, as in --keep class=person"),
         };
-        Ok(move |class: &str| match &kept {
-            Some(kept) => class.eq_ignore_ascii_case(kept),
-            None => !is_vehicle(class),
+        Ok(move |class: &str| {
+            kept.as_ref()
+                .map_or(!is_vehicle(class), |kept| class.eq_ignore_ascii_case(kept))
         })
     }
 
@@ -251,19 +248,15 @@ impl Units {
 
     /// The clock from the run, with its description.
     pub(crate) fn remembered_live_clock(&self) -> anyhow::Result<Option<(Clock, String)>> {
-        let Some(rate) = self.remembered.rate_option() else {
-            return Ok(None);
-        };
-        let clock = self.remembered.clock()?;
-        Ok(clock.map(|clock| (clock, format!("as in the run's training ({rate})"))))
+        let rate = self.remembered.rate_option();
+        let of_run = self.remembered.clock()?.zip(rate);
+        Ok(of_run.map(|(clock, rate)| (clock, format!("as in the run's training ({rate})"))))
     }
 }
 
 fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
-    if number.is_finite() && number > 0.0 {
-        Ok(number)
-    } else {
-        Err("must be a finite number above 0".to_owned())
-    }
+    let is_right = number.is_finite() && number > 0.0;
+    let problem = || "must be a finite number above 0".to_owned();
+    is_right.then_some(number).ok_or_else(problem)
 }

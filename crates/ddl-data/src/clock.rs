@@ -34,13 +34,13 @@ pub enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// Units per second; `None` for dates.
-    pub(crate) fn a_second(self) -> Option<f64> {
+    /// Units per second, and their sign; `None` for dates.
+    pub(crate) fn a_second(self) -> Option<(i64, &'static str)> {
         match self {
-            Self::Seconds => Some(1.0),
-            Self::Milliseconds => Some(1e3),
-            Self::Microseconds => Some(1e6),
-            Self::Nanoseconds => Some(1e9),
+            Self::Seconds => Some((1, "s")),
+            Self::Milliseconds => Some((1_000, "ms")),
+            Self::Microseconds => Some((1_000_000, "us")),
+            Self::Nanoseconds => Some((1_000_000_000, "ns")),
             Self::Dates => None,
         }
     }
@@ -164,6 +164,11 @@ impl Clock {
         self.count == Count::Frames { ticks: 1 }
     }
 
+    /// Whether ticks are time stamps.
+    pub fn counts_times(self) -> bool {
+        matches!(self.count, Count::Stamps(_))
+    }
+
     /// The tick of a frame number, or of a time stamp in microseconds.
     ///
     /// # Errors
@@ -193,18 +198,27 @@ impl Clock {
         }
     }
 
+    /// A tick in words, such as `frame 12`, `2.3 s` or a date: each tick has its own.
+    pub fn words(self, tick: i64) -> String {
+        let number = self.number(tick);
+        match self.count {
+            Count::Frames { .. } => format!("frame {number}"),
+            Count::Stamps(unit) => unit
+                .a_second()
+                .map_or(number.to_string(), |(_, sign)| format!("{number} {sign}")),
+        }
+    }
+
     /// The frame number or time of a tick.
     pub fn number(self, tick: i64) -> FrameNumber {
         let unit = match self.count {
             Count::Frames { ticks } => return FrameNumber::of_parts(tick, ticks),
             Count::Stamps(unit) => unit,
         };
-        match unit {
-            TimeUnit::Seconds => FrameNumber::of_parts(tick, STAMPS_A_SECOND),
-            TimeUnit::Milliseconds => FrameNumber::of_parts(tick, STAMPS_A_SECOND / 1000),
-            TimeUnit::Microseconds => FrameNumber::Whole(tick),
-            TimeUnit::Nanoseconds => FrameNumber::Whole(tick.saturating_mul(1000)),
-            TimeUnit::Dates => match OffsetDateTime::from_unix_timestamp_nanos(i128::from(tick) * 1000) {
+        match unit.a_second() {
+            Some((a_second, _)) if a_second > STAMPS_A_SECOND => FrameNumber::Whole(tick.saturating_mul(1000)),
+            Some((a_second, _)) => FrameNumber::of_parts(tick, STAMPS_A_SECOND / a_second),
+            None => match OffsetDateTime::from_unix_timestamp_nanos(i128::from(tick) * 1000) {
                 Ok(date) => FrameNumber::Date(date),
                 Err(_) => FrameNumber::of_parts(tick, STAMPS_A_SECOND),
             },

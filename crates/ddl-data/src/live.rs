@@ -22,7 +22,7 @@ const COMMON: u64 = 4;
 /// Which pedestrians are observed well enough for a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completeness {
-    /// Those tracked for all 8 steps, 2.8 s.
+    /// Those tracked for all 8 steps: the first is 2.8 s old.
     Whole,
     /// Those with two rows or more; earlier positions continue their motion backwards.
     Partial,

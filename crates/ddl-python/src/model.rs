@@ -253,9 +253,8 @@ impl Model {
         let options = ForecastOptions::new(&self.0, self.hypotheses(), false, joint)?;
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
-        let name = recording.tracks.name();
-        let frame = |tick| recording.moments.clock.number(tick).nearest();
-        let page = player.to_html(&forecasts, name, None, frame).map_err(raised)?;
+        let (name, clock) = (recording.tracks.name(), recording.moments.clock);
+        let page = player.to_html(&forecasts, name, None, clock).map_err(raised)?;
         Ok((page, doubt))
     }
 }

@@ -7,7 +7,7 @@ use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
 use crate::observed::WindowOptions;
 use ddl::data::{
     Clock, ColumnChoice, Completeness, Format, Homography, Misfit, Observation, PedestrianId, PedestrianName,
-    PlausibilityWarning, Recording as Tracks, RecordingError, Window, parse_columns, write_recording,
+    Recording as Tracks, RecordingError, Window, parse_columns, write_recording,
 };
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -295,19 +295,8 @@ impl Recording {
 
     /// Text that describes a fault suggested by the speeds.
     fn doubt(&self) -> Option<String> {
-        let mut warning = self.tracks.speed_warning()?;
-        match &mut warning {
-            PlausibilityWarning::Jump(fastest) => self.count_as_given(&mut fastest.frame),
-            PlausibilityWarning::NoSteps { frame_step } => self.count_as_given(frame_step),
-            _ => {}
-        }
-        Some(warning.to_string())
-    }
-}
-
-impl Recording {
-    fn count_as_given(&self, tick: &mut i64) {
-        *tick = self.moments.clock.number(*tick).nearest();
+        let warning = self.tracks.speed_warning()?;
+        Some(ddl::in_frames(self.moments.clock, warning).to_string())
     }
 }
 

@@ -26,6 +26,9 @@ pub struct ForecastSnapshot {
     pub recording: String,
     /// Raw number of the last observed frame.
     pub frame: i64,
+    /// The moment in words, such as `2.3 s`, where it is not this frame.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub when: Option<String>,
     /// Raw frames in a step of 0.4 s.
     pub frame_step: i64,
     /// The pedestrians of the window.
@@ -128,9 +131,8 @@ impl ForecastSnapshot {
             }
         }
         let seen: Vec<&[Position]> = seen.iter().map(Vec::as_slice).collect();
-        if let Some(longest) = seen.iter().map(|path| path.len()).max()
-            && longest > HORIZON
-        {
+        let longest = seen.iter().map(|path| path.len()).max().unwrap_or_default();
+        if longest > HORIZON {
             return Err(EvaluationError::Seen { longest });
         }
         let fold = window.recording().to_owned();
@@ -143,6 +145,7 @@ impl ForecastSnapshot {
             forecaster,
             recording: window.recording().to_owned(),
             frame: window.frames()[OBSERVED - 1],
+            when: None,
             frame_step: window.frame_step(),
             pedestrians: truths
                 .iter()

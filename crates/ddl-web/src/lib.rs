@@ -38,8 +38,8 @@ pub fn forecast(
         let tracks = Tracks::read(&name, &bytes.to_vec(), &options)?;
         let windows = tracks.windows(tracks.observed.windows.clone(), &options)?;
         let forecasts = tracks::forecasts(&windows, &options)?;
-        let lines = tracks::lines(&windows, &forecasts, tracks.observed.clock, &options)?;
-        answer(&tracks.told, &lines, true)
+        let (lines, told) = tracks.answer(&windows, &forecasts, &options)?;
+        answer(&told, &lines, true)
     })
 }
 

@@ -5,7 +5,7 @@ use crate::model;
 use crate::options::Options;
 use crate::tracks::lines;
 use ddl::data::{Clock, LiveTracks, Misfit, PedestrianId, TimeUnit};
-use ddl::{AdaptiveRegions, Ddl, LiveForecaster};
+use ddl::{AdaptiveRegions, Ddl, LiveForecaster, UnfamiliarMotions};
 use std::sync::Arc;
 use wasm_bindgen::prelude::*;
 
@@ -23,6 +23,7 @@ pub struct Live {
     clock: Clock,
     /// Whether moments are times in seconds, and not frame numbers.
     are_times: bool,
+    motions: UnfamiliarMotions,
 }
 
 #[wasm_bindgen]
@@ -55,6 +56,7 @@ impl Live {
             options,
             clock,
             are_times: given.is_none(),
+            motions: UnfamiliarMotions::default(),
         })
     }
 
@@ -100,11 +102,15 @@ impl Live {
         let misfits = Misfit::words(self.forecaster.tracks().misfits(), |misfit| {
             format!("pedestrian {} at {}", misfit.pedestrian.0, clock.number(misfit.tick))
         });
-        let notes: Vec<String> = misfits.into_iter().map(|words| format!("warning: {words}")).collect();
+        let mut notes: Vec<String> = misfits.into_iter().map(|words| format!("warning: {words}")).collect();
         let text = match now {
             None => String::new(),
-            Some(now) => lines(&[now.window], &[now.forecast], clock, &self.options)?,
+            Some(now) => {
+                let (window, forecast) = ([now.window], [now.forecast]);
+                lines(&window, &forecast, clock, &self.options, &mut self.motions)?
+            }
         };
+        notes.extend(self.motions.warning());
         answer(&notes, &text, self.forecaster.tracks().is_moment())
     }
 

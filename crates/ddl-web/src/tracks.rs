@@ -5,7 +5,10 @@ use crate::model;
 use crate::options::Options;
 use ddl::data::{Clock, Format, Window, parse_columns};
 use ddl::memory::{Playback, SceneMemory};
-use ddl::{AdaptiveRegions, Forecast, Forecaster as _, Moment, OWN_CLOCKS, ObservedTracks, TimedRecording, TrackUnits};
+use ddl::{
+    AdaptiveRegions, Forecast, Forecaster as _, Moment, OWN_CLOCKS, ObservedTracks, TimedRecording, TrackUnits,
+    UnfamiliarMotions,
+};
 use std::path::Path;
 
 pub(crate) struct Tracks {
@@ -46,6 +49,21 @@ impl Tracks {
         }
         told.extend(observed.estimated());
         Ok(Self { observed, told })
+    }
+
+    /// These forecasts as JSON lines, and what is told of the tracks and of their motions.
+    pub(crate) fn answer(
+        &self,
+        windows: &[Window],
+        forecasts: &[Forecast],
+        options: &Options,
+    ) -> Result<(String, Vec<String>), Failure> {
+        let mut motions = UnfamiliarMotions::default();
+        let lines = lines(windows, forecasts, self.observed.clock, options, &mut motions)?;
+        Ok((
+            lines,
+            motions.warning().into_iter().chain(self.told.iter().cloned()).collect(),
+        ))
     }
 
     /// Some of its windows, with the tracks of earlier pedestrians if they are asked for.
@@ -95,21 +113,18 @@ pub(crate) fn forecasts(windows: &[Window], options: &Options) -> Result<Vec<For
         .collect())
 }
 
-/// Forecasts as the program's JSON lines.
+/// Forecasts as the program's JSON lines. Motions unlike the training motions are counted.
 pub(crate) fn lines(
     windows: &[Window],
     forecasts: &[Forecast],
     clock: Clock,
     options: &Options,
+    motions: &mut UnfamiliarMotions,
 ) -> Result<String, Failure> {
-    let moments = windows.iter().zip(forecasts).map(|(window, forecast)| Moment {
-        scene: None,
-        window,
-        forecast,
-        certified: None,
-        clock,
-    });
+    let pairs = windows.iter().zip(forecasts);
+    let moments = pairs.map(|(window, forecast)| Moment::new(window, forecast, clock));
     let moments: Vec<Moment<'_>> = moments.collect();
+    motions.add(&moments);
     let of_moments = if options.joint {
         ddl::joint_lines
     } else {

@@ -35,15 +35,14 @@ pub(crate) fn view(name: &str, bytes: &[u8], options: &Options) -> Result<JsValu
     };
     let windows = tracks.windows(player.shown(), options)?;
     let forecasts = tracks::forecasts(&windows, options)?;
-    let warning = observed.warning.as_ref().map(ToString::to_string);
-    let frame = |frame| observed.clock.number(frame).nearest();
     let every: Vec<_> = forecasts.iter().collect();
+    let (lines, notes) = tracks.answer(&windows, &forecasts, options)?;
     let view = View {
         data: observed.recording.summary(),
-        page: player.to_html(&every, name, warning.as_deref(), frame)?,
+        page: player.to_html(&every, name, observed.warning.as_ref(), observed.clock)?,
         place: tracks.place()?,
-        lines: tracks::lines(&windows, &forecasts, observed.clock, options)?,
-        notes: tracks.told,
+        notes,
+        lines,
     };
     parse(&serde_json::to_string(&view)?)
 }

@@ -80,6 +80,7 @@ pub use tracks::observed::{
     NOISY, OWN_CLOCKS, ObservedTracks, in_frames, steps_in_words, words_of_misfits, words_of_warning,
 };
 pub use tracks::timed::TimedRecording;
+pub use tracks::unfamiliar::UnfamiliarMotions;
 pub use trust::calibration::region_table;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 

@@ -4,3 +4,4 @@ pub(crate) mod json_lines;
 pub(crate) mod moment;
 pub(crate) mod observed;
 pub(crate) mod timed;
+pub(crate) mod unfamiliar;

@@ -203,26 +203,17 @@ fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String>
 
 /// The rate of the rows of a pedestrian, its jitter, and the noise.
 fn rows_in_words(s: &Summary) -> String {
-    s.rows_a_second.map_or_else(
-        || "no pedestrian has two".to_owned(),
-        |rate| {
-            let jitter = if s.jitter * rate > EVEN_CLOCK {
-                format!(", ± {:.0} ms", 1e3 * s.jitter)
-            } else {
-                String::new()
-            };
-            let clocks = if s.common_frames {
-                ""
-            } else {
-                ", each pedestrian on its own clock"
-            };
-            let noise = if s.noise > EXACT {
-                format!("noise {:.0} cm", 100.0 * s.noise)
-            } else {
-                "noise below 1 cm".to_owned()
-            };
-            format!("{rate:.3} a second{jitter}{clocks}, {noise}")
-        },
+    let Some(rate) = s.rows_a_second else {
+        return "no pedestrian has two".to_owned();
+    };
+    let jitter = (s.jitter * rate > EVEN_CLOCK).then(|| format!(", ± {:.0} ms", 1e3 * s.jitter));
+    let clocks = (!s.common_frames).then_some(", each pedestrian on its own clock");
+    let noise = (s.noise > EXACT).then(|| format!("{:.0} cm", 100.0 * s.noise));
+    format!(
+        "{rate:.3} a second{}{}, noise {}",
+        jitter.unwrap_or_default(),
+        clocks.unwrap_or_default(),
+        noise.as_deref().unwrap_or("below 1 cm")
     )
 }
 
@@ -230,27 +221,33 @@ fn rows_in_words(s: &Summary) -> String {
 fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Clock) -> std::fmt::Result {
     let speed = match (s.median_speed, &s.fastest) {
         (Some(median), Some(fastest)) => format!(
-            "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, frame {})",
+            "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, {})",
             fastest.speed,
             fastest.pedestrian,
-            clock.number(fastest.frame)
+            clock.words(fastest.frame)
         ),
         _ => "unknown: no successive positions".to_owned(),
     };
     let gaps = s.longest_hole.as_ref().map_or_else(String::new, |gap| {
         format!(
-            ", the longest {:.1} s (pedestrian {}, after frame {})",
+            ", the longest {:.1} s (pedestrian {}, after {})",
             gap.seconds,
             gap.pedestrian,
-            clock.number(gap.after)
+            clock.words(gap.after)
         )
     });
+    let span = if clock.counts_times() {
+        format!("{} to {}", clock.words(s.first_frame), clock.words(s.last_frame))
+    } else {
+        let [first, last] = [s.first_frame, s.last_frame].map(|frame| clock.number(frame));
+        format!("frames {first} to {last} ({} per step of 0.4 s)", clock.step_number())
+    };
     let rows = rows_in_words(s);
     let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
     writeln!(
         out,
         "\x20 observed     {}, {}\n\
-         \x20 time         {:.1} s, frames {} to {} ({} per step of 0.4 s)\n\
+         \x20 time         {:.1} s, {span}\n\
          \x20 area         x {:.2} to {:.2} m, y {:.2} to {:.2} m\n\
          \x20 speed        {speed}\n\
          \x20 rows         {rows}\n\
@@ -260,9 +257,6 @@ fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Cl
         many(s.pedestrians, "pedestrian", "pedestrians"),
         many(s.observations, "position", "positions"),
         s.seconds,
-        clock.number(s.first_frame),
-        clock.number(s.last_frame),
-        clock.step_number(),
         s.low[0],
         s.high[0],
         s.low[1],

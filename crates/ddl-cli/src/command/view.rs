@@ -62,15 +62,15 @@ impl View {
         };
         let forecasts: Vec<&Forecast> = forecasts.iter().collect();
         let name = self.tracks.file().file_name().unwrap_or_default();
-        let warning = observed.warning.as_ref().map(ToString::to_string);
-        let frame = |frame| observed.clock.number(frame).nearest();
-        let page = player.to_html(&forecasts, &name.to_string_lossy(), warning.as_deref(), frame)?;
+        let (warning, clock) = (observed.warning.as_ref(), observed.clock);
+        let page = player.to_html(&forecasts, &name.to_string_lossy(), warning, clock)?;
         let path = self.output.unwrap_or_else(|| {
             let stem = self.tracks.file().file_stem().unwrap_or_default();
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
         });
         output::write_output(Some(&path), &page)?;
-        if let Some(warning) = observed.misfits() {
+        let unfamiliar = player.unfamiliar(&forecasts, clock);
+        for warning in unfamiliar.into_iter().chain(observed.misfits()) {
             tell(format_args!("{warning}"));
         }
         if output::file_of(Some(&path)).is_none() {

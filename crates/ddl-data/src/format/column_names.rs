@@ -38,13 +38,13 @@ const NAMES: [(Role, &str); 13] = [
     ),
     (
         Role::X,
-        "x posx posex posepositionx xpos positionx xposition centerx xcenter centrex xcentre worldx xworld px xest \
-         coordx xcoord locx xloc",
+        "x posx posex posepositionx poseposepositionx xpos positionx xposition centerx xcenter centrex xcentre \
+         worldx xworld px xest coordx xcoord locx xloc",
     ),
     (
         Role::Y,
-        "y posy posey posepositiony ypos positiony yposition centery ycenter centrey ycentre worldy yworld py yest \
-         coordy ycoord locy yloc",
+        "y posy posey posepositiony poseposepositiony ypos positiony yposition centery ycenter centrey ycentre \
+         worldy yworld py yest coordy ycoord locy yloc",
     ),
     (Role::Class, "class classname label type agenttype objecttype category"),
     (Role::Scene, "scene"),
@@ -138,12 +138,16 @@ pub(super) fn role_of_unit(unit: TimeUnit) -> Option<String> {
 
 /// The column of that name with a role that the user gives. The last word of its name may be a unit.
 pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
-    let last = words(name).pop().unwrap_or_default();
+    let words = words(name);
+    let last = words.last().map_or("", String::as_str);
+    let of_time = [words.concat().as_str(), last]
+        .iter()
+        .find_map(|unit| unit_of(&TIME_UNITS, unit));
     Named {
         index,
         role,
-        time_unit: unit_of(&TIME_UNITS, &last).filter(|_| role == Role::Time),
-        length: unit_of(&LENGTH_UNITS, &last).filter(|_| matches!(role, Role::X | Role::Y)),
+        time_unit: of_time.filter(|_| role == Role::Time),
+        length: unit_of(&LENGTH_UNITS, last).filter(|_| matches!(role, Role::X | Role::Y)),
     }
 }
 
@@ -166,33 +170,19 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
         Some(*role)
     };
     let whole = role(&words);
-    let (last, rest) = words.split_last()?;
-    let (role, unit) = match whole {
-        Some(role) => (role, None),
-        None => (role(rest)?, Some(last.as_str())),
-    };
-    let named = Named {
-        index,
-        role,
-        time_unit: None,
-        length: None,
-    };
-    match (role, unit) {
-        (Role::Time, None) => Some(Named {
-            time_unit: unit_of(&TIME_UNITS, &words.concat()),
-            ..named
-        }),
-        (_, None) => Some(named),
-        (Role::Time, Some(unit)) => Some(Named {
-            time_unit: Some(unit_of(&TIME_UNITS, unit)?),
-            ..named
-        }),
-        (Role::X | Role::Y, Some(unit)) => Some(Named {
-            length: Some(unit_of(&LENGTH_UNITS, unit)?),
-            ..named
-        }),
-        (_, Some(_)) => None,
-    }
+    let found = whole.or_else(|| role(words.split_last()?.1))?;
+    let named = chosen_as(found, index, name);
+    // A word beside the name of a role is its unit.
+    (whole.is_some() || named.time_unit.is_some() || named.length.is_some()).then_some(named)
+}
+
+/// The column of nanoseconds beside this one of whole seconds, as in stamps of ROS: its first words are the same.
+pub(super) fn nanoseconds_beside(names: &[&str], seconds: usize) -> Option<usize> {
+    let plain = words(names[seconds]).concat();
+    let stem = plain.strip_suffix("secs").or(plain.strip_suffix("sec"))?;
+    let is_rest = |end: &str| is_one_of("nanosec nanosecs nsec nsecs", end);
+    let mut names = names.iter().map(|name| words(name).concat());
+    names.position(|name| name.strip_prefix(stem).is_some_and(is_rest))
 }
 
 /// The words of a name in small letters: `trackId`, `track_id` and `Track ID` have the words track and id.

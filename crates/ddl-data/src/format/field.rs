@@ -48,7 +48,7 @@ pub(super) fn frame(text: &str, name: &str, unit: Option<TimeUnit>) -> Result<i6
 }
 
 fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
-    let Some(a_second) = unit.a_second() else {
+    let Some((a_second, _)) = unit.a_second() else {
         let wanted = "a date with a time such as 2026-05-31T12:00:00.4Z";
         let stamp = date(text).ok_or_else(|| not_a_time("time", &quoted(text), wanted))?;
         let is_near = stamp.abs() < FRAME_LIMIT;
@@ -56,13 +56,11 @@ fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
             .then_some(stamp)
             .ok_or_else(|| format!("time {} is after the year 2250", quoted(text)));
     };
-    let scale = STAMPS_A_SECOND as f64 / a_second;
+    let scale = STAMPS_A_SECOND as f64 / a_second as f64;
     // Whole nanoseconds since 1970 have more digits than an `f64`.
-    let whole = text.parse::<i64>().ok().filter(|_| scale < 1.0);
-    let stamp = match whole {
-        Some(number) => Some(number.div_euclid((1.0 / scale) as i64) as f64),
-        None => text.parse::<f64>().ok().map(|number| (number * scale).round()),
-    };
+    let whole = text.parse::<i64>().ok().filter(|_| a_second > STAMPS_A_SECOND);
+    let whole = whole.map(|number| number.div_euclid(a_second / STAMPS_A_SECOND) as f64);
+    let stamp = whole.or_else(|| Some((text.parse::<f64>().ok()? * scale).round()));
     let stamp = stamp.filter(|stamp| stamp.is_finite());
     let stamp = stamp.ok_or_else(|| not_a_time("time", &quoted(text), "a time"))?;
     if stamp.abs() >= FRAME_LIMIT as f64 {

@@ -1,10 +1,9 @@
 //! The header of a table: what its columns hold, by the names that people give them.
 
 use crate::clock::TimeUnit;
-use std::collections::BTreeMap;
 
 use crate::format::choice::ColumnChoice;
-use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, is_one_of, named, words};
+use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, is_one_of, named, nanoseconds_beside, words};
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
 
@@ -32,6 +31,8 @@ pub(super) enum TimeColumn {
 pub(super) struct Header {
     pub(super) time: TimeColumn,
     pub(super) frame: usize,
+    /// Nanoseconds beside whole seconds, which are the first column.
+    pub(super) nanoseconds: Option<usize>,
     pub(super) pedestrian: usize,
     pub(super) place: Place,
     /// Units of length per metre; `None` for pixels.
@@ -73,6 +74,9 @@ impl Header {
             found: Vec::new(),
             unknown: Vec::new(),
         };
+        let has_no_time = !names
+            .iter()
+            .any(|name| named(0, name).is_some_and(|named| named.role == Role::Time));
         for (index, name) in names.iter().enumerate() {
             let chosen = choice
                 .roles
@@ -80,7 +84,11 @@ impl Header {
                 .find(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
             // x and y that are given stand for a box as well, and a box for x and y.
             let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
-            let by_name = named(index, name);
+            let by_name = if has_no_time && nanoseconds_beside(names, index).is_some() {
+                Some(chosen_as(Role::Time, index, name))
+            } else {
+                named(index, name)
+            };
             match (chosen, by_name) {
                 (Some(&(role, _)), _) => roles.found.push(chosen_as(role, index, name)),
                 (None, Some(named)) if !is_given(named.role) => roles.found.push(named),
@@ -89,6 +97,15 @@ impl Header {
             }
         }
         let mut header = roles.header(choice)?;
+        if let Some(rest) = nanoseconds_beside(names, header.frame) {
+            header.time = TimeColumn::Known(Some(TimeUnit::Seconds));
+            header.nanoseconds = Some(rest);
+            let [first, rest] = [header.frame, rest].map(|index| quoted(names[index]));
+            header.unread.retain(|name| *name != rest);
+            header
+                .remarks
+                .push(format!("the times are {first} and {rest} together"));
+        }
         if choice.time_unit.is_some() {
             header.time = TimeColumn::Known(choice.time_unit);
         }
@@ -139,6 +156,7 @@ impl Roles<'_> {
                 (_, Some(unit)) => TimeColumn::Known(Some(unit)),
             },
             frame: time.index,
+            nanoseconds: None,
             pedestrian: pedestrian.index,
             place,
             has_unit: is_point && matches!(of_length, Some(LengthUnit::PerMetre(_))),
@@ -147,8 +165,8 @@ impl Roles<'_> {
                 None => Some(1.0),
                 Some(unit) => unit.per_metre(),
             },
-            scene: self.of(Role::Scene).map(|named| named.index),
-            class: self.of(Role::Class).map(|named| named.index),
+            scene: self.index(Role::Scene),
+            class: self.index(Role::Class),
             keep: choice.keep.as_ref().and_then(|(name, _)| self.kept(name)),
             unread: unread.into_iter().map(|index| quoted(self.names[index])).collect(),
         })
@@ -216,10 +234,7 @@ impl Roles<'_> {
 
     /// The column that `--keep` names, by its role or its name.
     fn kept(&self, name: &str) -> Option<usize> {
-        let of_role = self
-            .of(Role::Class)
-            .filter(|_| name == "class")
-            .map(|named| named.index);
+        let of_role = self.index(Role::Class).filter(|_| name == "class");
         of_role.or_else(|| self.names.iter().position(|column| column.eq_ignore_ascii_case(name)))
     }
 
@@ -227,27 +242,21 @@ impl Roles<'_> {
     fn not_there(&self, choice: &ColumnChoice) -> Vec<Fault> {
         let is_there = |name: &str| self.names.iter().any(|column| column.eq_ignore_ascii_case(name));
         let chosen = choice.roles.iter().map(|(_, name)| name).filter(|name| !is_there(name));
-        let kept = choice
-            .keep
-            .iter()
-            .map(|(name, _)| name)
-            .filter(|name| self.kept(name).is_none());
+        let keep = choice.keep.iter().map(|(name, _)| name);
+        let kept = keep.filter(|name| self.kept(name).is_none());
         let fault = |name: &String| (None, format!("there is no column {:?}", quoted(name)));
         chosen.chain(kept).map(fault).collect()
     }
 
     /// Columns that say the same.
     fn repeated(&self) -> Vec<Fault> {
-        let mut first_of_role: BTreeMap<Role, usize> = BTreeMap::new();
         let mut faults = Vec::new();
         for named in &self.found {
-            let Some(&first) = first_of_role.get(&named.role) else {
-                first_of_role.insert(named.role, named.index);
-                continue;
-            };
-            let [first, again] = [first, named.index].map(|index| quoted(self.names[index]));
-            let fault = format!("the columns {first:?} and {again:?} both say the same");
-            faults.push((Some(named.index), fault));
+            if let Some(first) = self.of(named.role).filter(|first| first.index != named.index) {
+                let [first, again] = [first, named].map(|named| quoted(self.names[named.index]));
+                let fault = format!("the columns {first:?} and {again:?} both say the same");
+                faults.push((Some(named.index), fault));
+            }
         }
         if let (Some(Place::Point([x, _])), Some(corner)) = (self.point(), self.corner()) {
             let [x, corner] = [x, corner.columns()[0]].map(|index| quoted(self.names[index]));
@@ -317,35 +326,24 @@ impl Roles<'_> {
     }
 
     fn missing(&self) -> Option<Fault> {
-        let has_time = self.of(Role::Time).or(self.of(Role::Frame)).is_some();
-        let lacks = |role: Role| self.of(role).is_none();
-        let no_place = self.place().is_none();
-        let missing = [
-            ("frame", !has_time),
-            ("pedestrian", lacks(Role::Pedestrian)),
-            ("x", no_place && lacks(Role::X)),
-            ("y", no_place && lacks(Role::Y)),
+        let has = |role: Role| self.of(role).is_some();
+        let has_place = self.place().is_some();
+        let roles = [
+            ("frame", has(Role::Time) || has(Role::Frame)),
+            ("pedestrian", has(Role::Pedestrian)),
+            ("x", has_place || has(Role::X)),
+            ("y", has_place || has(Role::Y)),
         ];
-        let missing: Vec<&str> = missing
-            .into_iter()
-            .filter_map(|(name, lacks)| lacks.then_some(name))
-            .collect();
-        if missing.is_empty() {
-            return None;
+        let missing = roles.into_iter().filter(|(_, is_there)| !is_there);
+        let missing: Vec<&str> = missing.map(|(name, _)| name).collect();
+        let role = missing.first()?;
+        let unknown = self.unknown.iter().map(|&index| quoted(self.names[index]));
+        let unknown: Vec<String> = unknown.map(|name| format!("{name:?}")).collect();
+        let mut rename = String::new();
+        if !unknown.is_empty() {
+            let hint = "; rename the column that holds it, or name it";
+            rename = format!("{hint} (--columns {role}=NAME): unknown are {}", first_of(&unknown));
         }
-        let unknown = self
-            .unknown
-            .iter()
-            .map(|&index| format!("{:?}", quoted(self.names[index])));
-        let unknown: Vec<String> = unknown.collect();
-        let rename = match &unknown[..] {
-            [] => String::new(),
-            unknown => format!(
-                "; rename the column that holds it, or name it (--columns {}=NAME): unknown are {}",
-                missing[0],
-                first_of(unknown)
-            ),
-        };
         Some((
             self.unknown.first().copied(),
             format!("still missing: {}{rename}", missing.join(", ")),

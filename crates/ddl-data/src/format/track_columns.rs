@@ -90,16 +90,12 @@ impl TrackColumns {
             return Ok((Self::named(header, names, Separator::of_numbers(first), choice), false));
         }
         let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
-        match Header::of(&names, choice) {
-            Ok(header) => {
-                let names = names.iter().map(|&name| name.to_owned()).collect();
-                Ok((Self::named(header, names, separator, choice), true))
-            }
-            Err((field, problem)) => {
-                let place = field.map_or(FilePlace::line(line), |index| FilePlace::field(line, index + 1));
-                Err(place.wrong(problem))
-            }
-        }
+        let header = Header::of(&names, choice).map_err(|(field, problem)| {
+            let place = field.map_or(FilePlace::line(line), |index| FilePlace::field(line, index + 1));
+            place.wrong(problem)
+        })?;
+        let names = names.iter().map(|&name| name.to_owned()).collect();
+        Ok((Self::named(header, names, separator, choice), true))
     }
 
     fn named(header: Header, names: Vec<String>, separator: Separator, choice: &ColumnChoice) -> Self {
@@ -149,6 +145,7 @@ impl TrackColumns {
                 _ => TimeColumn::Frame,
             },
             frame: layout.frame,
+            nanoseconds: None,
             pedestrian: layout.pedestrian,
             place: layout.place,
             per_metre: choice.unit.map_or(layout.per_metre, LengthUnit::per_metre),
@@ -192,7 +189,7 @@ impl TrackColumns {
         let has_time = || {
             fields
                 .get(self.header.frame)
-                .is_some_and(|time| time.parse::<f64>().is_ok())
+                .is_some_and(|time| self.separator.with_point(time).parse::<f64>().is_ok())
         };
         is_comment(text) && !(fields.len() == self.names.len() && has_time())
     }
@@ -232,7 +229,8 @@ impl TrackColumns {
             let time = fields
                 .get(self.header.frame)
                 .filter(|_| self.header.time == TimeColumn::Frame);
-            if let Some(time) = time.filter(|time| field::has_fraction(time) && !is_comment(text)) {
+            let has_fraction = |time: &&Cow<'_, str>| field::has_fraction(&self.separator.with_point(time));
+            if let Some(time) = time.filter(|time| has_fraction(time) && !is_comment(text)) {
                 self.look_at(Some(time));
                 return Ok(None);
             }
@@ -296,6 +294,8 @@ impl TrackColumns {
 
     /// Finds out what the column of the time counts from a time: a first one, or one with a fraction.
     fn look_at(&mut self, time: Option<&str>) {
+        let time = time.map(|time| self.separator.with_point(time));
+        let time = time.as_deref();
         let unit = match self.header.time {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Time => time.map(field::unit_of),
@@ -334,7 +334,13 @@ impl TrackColumns {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Frame | TimeColumn::Time => None,
         };
-        let frame = place(self.header.frame).read(field::frame(&fields[self.header.frame], "frame", unit))?;
+        let time = self.separator.with_point(&fields[self.header.frame]);
+        let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
+        if let Some(index) = self.header.nanoseconds {
+            frame += place(index)
+                .read(field::integer(&fields[index], "nanoseconds"))?
+                .div_euclid(1000);
+        }
         let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
@@ -353,15 +359,12 @@ impl TrackColumns {
             place(index).read(field::number(&fields[index], &self.names[index]))?;
         }
         self.check_constant(fields, line)?;
-        let scene = match self.header.scene {
-            None => None,
-            Some(index) => {
-                let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
-                Some(place(index).read(scene)?)
-            }
-        };
+        let scene = self.header.scene.map(|index| {
+            let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
+            place(index).read(scene)
+        });
         Ok(Some(TrackRow {
-            scene,
+            scene: scene.transpose()?,
             frame,
             unit,
             pedestrian,
@@ -372,19 +375,12 @@ impl TrackColumns {
 
     fn position(&self, fields: &[Cow<'_, str>], line: usize) -> Result<Position, Misread> {
         let per_metre = self.header.per_metre.unwrap_or(1.0);
-        let axes = ["x", "y"];
         let number = |index: usize, name: &str| {
-            // Where no comma stands between fields, it is a decimal comma.
-            let is_decimal = self.separator != Separator::Comma && fields[index].contains(',');
-            let coordinate = if is_decimal {
-                field::coordinate(&fields[index].replacen(',', ".", 1), name, per_metre)
-            } else {
-                field::coordinate(&fields[index], name, per_metre)
-            };
+            let coordinate = field::coordinate(&self.separator.with_point(&fields[index]), name, per_metre);
             FilePlace::field(line, index + 1).read(coordinate)
         };
         match self.header.place {
-            Place::Point([x, y]) => Ok([number(x, axes[0])?, number(y, axes[1])?]),
+            Place::Point([x, y]) => Ok([number(x, "x")?, number(y, "y")?]),
             Place::Centre(columns) | Place::FootOfCorners(columns) => {
                 let [left, top, right, bottom] = columns.map(|index| number(index, &self.names[index]));
                 let (left, top, right, bottom) = (left?, top?, right?, bottom?);

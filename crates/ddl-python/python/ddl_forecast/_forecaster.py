@@ -187,7 +187,7 @@ class Forecaster:
         last
             Only the last moment.
         whole
-            Forecast only pedestrians tracked for all 8 steps, 2.8 s.
+            Forecast only pedestrians tracked for all 8 steps.
         max_age
             Seconds until which a pedestrian is carried on after its last row; 0: only those with a row at the moment.
             Default: 0.4, or the time between its last rows if that is longer.

@@ -13,7 +13,7 @@
 //! quality                           how well it was observed; absent where nothing was estimated
 //! ```
 //!
-//! `joint` and `groups` of a moment are absent where the snapshot has none.
+//! `when`, `joint` and `groups` of a moment are absent where the snapshot has none.
 //!
 //! Positions of moments are whole millimetres, so the encoding is exact: `x / 1000` is the original number.
 
@@ -30,6 +30,8 @@ struct MomentData<'a> {
     forecaster: &'a str,
     recording: &'a str,
     frame: i64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    when: Option<&'a str>,
     frame_step: i64,
     pedestrians: Vec<PedestrianData<'a>>,
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -72,6 +74,7 @@ impl<'a> MomentData<'a> {
             forecaster: &moment.forecaster,
             recording: &moment.recording,
             frame: moment.frame,
+            when: moment.when.as_deref(),
             frame_step: moment.frame_step,
             pedestrians: moment.pedestrians.iter().map(PedestrianData::of).collect(),
             joint: moment.joint,

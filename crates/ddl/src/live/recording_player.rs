@@ -2,9 +2,10 @@
 
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
-use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
+use crate::tracks::moment::Moment;
+use crate::tracks::unfamiliar::UnfamiliarMotions;
 use ddl_core::{Forecast, Forecaster as _};
-use ddl_data::{OBSERVED, Recording, Window};
+use ddl_data::{Clock, OBSERVED, PlausibilityWarning, Recording, Window};
 use ddl_eval::EvaluationError;
 use ddl_report::ForecastSnapshot;
 use ddl_report::page::Viewer;
@@ -32,8 +33,17 @@ impl RecordingPlayer<'_> {
         (1..=count).map(|k| self.windows[last(k)].clone()).collect()
     }
 
+    /// A warning of motions unlike the training motions; arguments as those of [`to_html`](Self::to_html).
+    pub fn unfamiliar(&self, forecasts: &[&Forecast], clock: Clock) -> Option<String> {
+        let (shown, mut motions) = (self.shown(), UnfamiliarMotions::default());
+        for (window, forecast) in shown.iter().zip(forecasts) {
+            motions.add(&[Moment::new(window, forecast, clock)]);
+        }
+        motions.warning()
+    }
+
     /// The page, from one forecast for each window in [`shown`](Self::shown). `name` is the title of the recording,
-    /// `warning` describes a fault of it, and `frame` converts a frame number of the recording to one of its file.
+    /// `warning` describes a fault of it, and `clock` is that of its frames or times.
     ///
     /// # Errors
     /// [`DdlError::Evaluation`] or [`DdlError::Report`] if a forecast does not fit its window, or if there are none.
@@ -41,15 +51,16 @@ impl RecordingPlayer<'_> {
         &self,
         forecasts: &[&Forecast],
         name: &str,
-        warning: Option<&str>,
-        frame: impl Fn(i64) -> i64,
+        warning: Option<&PlausibilityWarning>,
+        clock: Clock,
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
         let futures = recording.futures();
         let moments = shown.iter().zip(forecasts).map(|(window, forecast)| {
             let seen = futures.of(window);
             let mut moment = ForecastSnapshot::under_way(model.name(), window, forecast, &seen)?;
-            moment.frame = frame(window.frames()[OBSERVED - 1]);
+            moment.frame = clock.number(moment.frame).nearest();
+            moment.when = Some(clock.words(window.frames()[OBSERVED - 1]));
             if self.joint {
                 moment.joint = true;
                 moment.groups = ddl_scene::groups(window);
@@ -76,7 +87,7 @@ impl RecordingPlayer<'_> {
             model.goal_model().words()
         )];
         notes.extend(certificates(forecasts));
-        notes.extend(unfamiliar(forecasts));
+        notes.extend(self.unfamiliar(forecasts, clock).map(|warning| warning + "."));
         let viewer = Viewer {
             title: recording.name(),
             lead: &lead,
@@ -87,33 +98,13 @@ impl RecordingPlayer<'_> {
     }
 }
 
-fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
-    let familiarities = forecasts
-        .iter()
-        .flat_map(|forecast| (0..forecast.pedestrians()).filter_map(move |i| forecast.familiarity(i)));
-    let unlike = familiarities
-        .clone()
-        .filter(|&familiarity| familiarity < UNFAMILIAR_THRESHOLD)
-        .count();
-    (unlike > 0).then(|| {
-        format!(
-        "{unlike} of {} motions are unlike the training motions (familiarity below {}): their forecasts use little of \
-         the network, and their weights are flatter.",
-            familiarities.count(),
-            UNFAMILIAR_THRESHOLD
-        )
-    })
-}
-
 fn certificates(forecasts: &[&Forecast]) -> Option<String> {
-    let verdicts: Vec<bool> = forecasts
-        .iter()
-        .flat_map(|forecast| {
-            let pedestrians = 0..forecast.pedestrians();
-            pedestrians.flat_map(move |i| (0..forecast.hypotheses()).map(move |k| forecast.certified(i, k)))
-        })
-        .flatten()
-        .collect();
+    let mut verdicts = Vec::new();
+    for forecast in forecasts {
+        for i in 0..forecast.pedestrians() {
+            verdicts.extend((0..forecast.hypotheses()).filter_map(|k| forecast.certified(i, k)));
+        }
+    }
     let held = verdicts.iter().filter(|&&holds| holds).count();
     (!verdicts.is_empty()).then(|| {
         format!(

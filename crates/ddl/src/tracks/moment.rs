@@ -21,6 +21,17 @@ pub struct Moment<'a> {
 }
 
 impl<'a> Moment<'a> {
+    /// A forecast of one scene, without certificates.
+    pub fn new(window: &'a Window, forecast: &'a Forecast, clock: Clock) -> Self {
+        Self {
+            scene: None,
+            window,
+            forecast,
+            certified: None,
+            clock,
+        }
+    }
+
     /// The certificate of a pedestrian's hypothesis, if they were asked for.
     pub fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
         Some(self.certified?.certificate(i, hypothesis))
@@ -38,6 +49,11 @@ impl<'a> Moment<'a> {
     /// The last observed frame.
     pub fn observed_until(&self) -> FrameNumber {
         self.clock.number(self.window.frames()[OBSERVED - 1])
+    }
+
+    /// The last observed frame, or its time, in words.
+    pub fn when(&self) -> String {
+        self.clock.words(self.window.frames()[OBSERVED - 1])
     }
 
     /// The moment in microseconds.

@@ -2,8 +2,8 @@
 
 use crate::tracks::timed::many_frames;
 use ddl_data::{
-    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
-    PlausibilityWarning, Recording, Window,
+    Clock, Completeness, Fastest, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality,
+    PedestrianId, PlausibilityWarning, Recording, Window,
 };
 use std::collections::BTreeSet;
 
@@ -69,16 +69,18 @@ impl ObservedTracks {
     /// Why there is no window; `None` if there is one.
     pub fn problem(&self) -> Option<String> {
         self.windows.is_empty().then(|| {
-            format!(
-                "no pedestrian {} (a step of 0.4 s is taken as {}); give --fps or --frame-step if frame numbers are \
-                 not 0.4 s apart, and --homography if positions are not in metres",
-                if self.completeness == Completeness::Whole {
-                    "was tracked for all 8 steps"
-                } else {
-                    "has two rows that fit, at most 2 s apart"
-                },
-                steps_in_words(self.clock)
-            )
+            let too_few = if self.completeness == Completeness::Whole {
+                "was tracked for all 8 steps"
+            } else {
+                "has two rows that fit, at most 2 s apart"
+            };
+            let rate = if self.clock.counts_times() {
+                "; give".to_owned()
+            } else {
+                let step = steps_in_words(self.clock);
+                format!(" (a step of 0.4 s is taken as {step}); check --fps or --frame-step, and give")
+            };
+            format!("no pedestrian {too_few}{rate} --unit or --homography if positions are not in metres")
         })
     }
 
@@ -138,10 +140,10 @@ impl ObservedTracks {
         let missing = rows.iter().filter(is_missing).count();
         if missing > 0 {
             told.push(format!(
-                "note: {missing} of the {} pedestrians at frame {} are not forecast: it is their first row, or their \
+                "note: {missing} of the {} pedestrians at {} are not forecast: it is their first row, or their \
                  position is doubtful",
                 rows.len(),
-                self.clock.number(last)
+                self.clock.words(last)
             ));
         }
         told
@@ -157,17 +159,12 @@ pub fn steps_in_words(clock: Clock) -> String {
 }
 
 /// The warning with frame numbers of the file.
-pub fn in_frames(clock: Clock, warning: PlausibilityWarning) -> PlausibilityWarning {
-    match warning {
-        PlausibilityWarning::Jump(mut fastest) => {
-            fastest.frame = clock.number(fastest.frame).nearest();
-            PlausibilityWarning::Jump(fastest)
-        }
-        PlausibilityWarning::NoSteps { frame_step } => PlausibilityWarning::NoSteps {
-            frame_step: clock.number(frame_step).nearest(),
-        },
-        other => other,
+pub fn in_frames(clock: Clock, mut warning: PlausibilityWarning) -> PlausibilityWarning {
+    use PlausibilityWarning::{Jump, NoSteps};
+    if let Jump(Fastest { frame: tick, .. }) | NoSteps { frame_step: tick } = &mut warning {
+        *tick = clock.number(*tick).nearest();
     }
+    warning
 }
 
 /// A sentence about rows that do not fit their tracks. With a warning of fast steps, nearly all positions are in other
@@ -183,15 +180,15 @@ pub fn words_of_misfits(
     }
     Misfit::words(misfits, |misfit| {
         let name = recording.names().of(misfit.pedestrian);
-        format!("pedestrian {name} at frame {}", clock.number(misfit.tick))
+        format!("pedestrian {name} at {}", clock.words(misfit.tick))
     })
 }
 
 /// The warning with the options of the program that correct its cause.
 pub fn words_of_warning(warning: &PlausibilityWarning) -> String {
     let options = match warning {
-        PlausibilityWarning::Fast { .. } => " (--unit, --homography, --fps)",
-        PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps { .. } => " (--fps)",
+        PlausibilityWarning::Fast { .. } => " (--unit, --homography, or --fps of frame numbers)",
+        PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps { .. } => " (--fps of frame numbers)",
         _ => "",
     };
     format!("{warning}{options}")

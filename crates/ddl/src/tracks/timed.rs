@@ -31,22 +31,17 @@ impl TimedRecording {
         if let (Some(option), Some(_)) = (given.rate_option(), rows.time_unit()) {
             return Err(DdlError::Rate { option });
         }
-        let notes = rows
-            .notes()
-            .iter()
-            .cloned()
-            .chain(note_of_rate(rows, given, remembered));
-        let clock = match given.clock()?.or(stated) {
-            Some(clock) => Some(clock),
-            None => remembered.clock()?,
-        };
+        let mut notes = rows.notes().to_vec();
+        notes.extend(note_of_rate(rows, given, remembered));
+        let clock = given.clock()?.or(stated);
+        let clock = clock.map_or_else(|| remembered.clock(), |clock| Ok(Some(clock)))?;
         let guessed = clock.is_none().then(|| {
             let step = many_frames(rows.frame_step());
             format!("a step of 0.4 s is taken as {step}; give --fps, --dt or --frame-step if this is wrong")
         });
         let clock = clock.map_or_else(|| Clock::with_frame_step(rows.frame_step()), Ok)?;
         Ok(Self {
-            notes: notes.collect(),
+            notes,
             recording: rows.on_clock(clock)?,
             clock,
             guessed,
@@ -60,11 +55,8 @@ impl TrackUnits {
     /// # Errors
     /// A rate that is out of range.
     pub fn clock(&self) -> Result<Option<Clock>, ClockError> {
-        match (self.frame_time(), self.frame_step) {
-            (Some(frame_time), _) => Clock::with_frame_time(frame_time).map(Some),
-            (None, Some(step)) => Clock::with_frame_step(step).map(Some),
-            (None, None) => Ok(None),
-        }
+        let of_step = self.frame_step.map(Clock::with_frame_step);
+        self.frame_time().map(Clock::with_frame_time).or(of_step).transpose()
     }
 
     /// The rate as an option of the program, such as `--fps 25`.

@@ -102,8 +102,8 @@ fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) ->
     }
     if !stream.state.headed {
         bail!(
-            "standard input: no pedestrian was observed long enough to be forecast; give --fps or --frame-step if \
-                 frame numbers are not 0.4 s apart"
+            "standard input: no pedestrian was observed long enough to be forecast; give --unit or --homography if \
+             positions are not in metres, and check --fps or --frame-step of frame numbers"
         );
     }
     Ok(())
@@ -314,10 +314,7 @@ impl Stream<'_> {
             let place = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
             self.left_out.doubtful(rows, tracks.misfits(), |misfit| {
                 let name = names.of(misfit.pedestrian);
-                format!(
-                    "pedestrian {name}{place} at frame {}",
-                    tracks.clock().number(misfit.tick)
-                )
+                format!("pedestrian {name}{place} at {}", tracks.clock().words(misfit.tick))
             });
             self.told.of_tracks(tracks, self.forecast.tracks.are_thinned());
             let is_idle = watching.scenes.as_ref().is_some_and(|scenes| scenes.waiting() == 0);

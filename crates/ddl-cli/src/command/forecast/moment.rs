@@ -1,8 +1,8 @@
 //! The forecasts of some frames, and the state that one group of frames passes on to the next.
 
 use crate::telling::tell;
-use ddl::data::{Clock, FrameNumber, SceneName, Window};
-use ddl::{AdaptiveRegions, CertifiedForecast, Moment};
+use ddl::data::{Clock, SceneName, Window};
+use ddl::{AdaptiveRegions, CertifiedForecast, Moment, UnfamiliarMotions};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
@@ -42,55 +42,10 @@ impl<'a> SceneWindows<'a> {
         let pairs = self.windows.iter().zip(forecasts.with_certificates()).enumerate();
         let moments = pairs.map(|(i, (window, (forecast, certified)))| Moment {
             scene: self.scenes.get(i).and_then(Option::as_ref),
-            window,
-            forecast,
             certified,
-            clock,
+            ..Moment::new(window, forecast, clock)
         });
         moments.collect()
-    }
-}
-
-/// The motions so far, and those unlike the training motions.
-#[derive(Debug, Default)]
-pub(crate) struct UnfamiliarMotions {
-    motions: usize,
-    unfamiliar: usize,
-    /// The pedestrian and the frame of the first.
-    first: Option<(String, FrameNumber)>,
-    /// Whether the warning has been given.
-    is_told: bool,
-}
-
-impl UnfamiliarMotions {
-    pub(crate) fn add(&mut self, moments: &[Moment<'_>]) {
-        for moment in moments {
-            for i in 0..moment.window.len() {
-                self.motions += 1;
-                let familiarity = moment.forecast.familiarity(i);
-                if familiarity.is_some_and(|f| f < ddl::UNFAMILIAR_THRESHOLD) {
-                    self.unfamiliar += 1;
-                    self.first
-                        .get_or_insert_with(|| (moment.who(i), moment.observed_until()));
-                }
-            }
-        }
-    }
-
-    /// Warns, once, of motions whose forecasts are less certain.
-    pub(crate) fn warn(&mut self, note: &str) {
-        let Some((who, frame)) = self.first.as_ref().filter(|_| !self.is_told) else {
-            return;
-        };
-        tell(format_args!(
-            "warning: {} of {} motions are unlike the training motions (familiarity below {}), first that of \
-             pedestrian {who} observed until frame {frame}: their forecasts use little of the network, and their \
-             weights are flatter{note}",
-            self.unfamiliar,
-            self.motions,
-            ddl::UNFAMILIAR_THRESHOLD,
-        ));
-        self.is_told = true;
     }
 }
 
@@ -145,9 +100,9 @@ pub(super) fn warn_of_violation(moments: &[Moment<'_>], state: &mut StreamState)
         state.is_violation_told = true;
         tell(format_args!(
             "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
-             observed until frame {}, hypothesis {hypothesis}: {violation}",
+             observed until {}, hypothesis {hypothesis}: {violation}",
             moment.who(i),
-            moment.observed_until(),
+            moment.when(),
         ));
     }
 }

@@ -107,10 +107,12 @@ fn answers_of<T>(
     let moments = windows.moments(&forecasts, clock);
     warn_of_violation(&moments, state);
     state.unfamiliar.add(&moments);
-    if command.stream().tracks.are_live() {
-        state
-            .unfamiliar
-            .warn("; this warning appears once, but each forecast has its familiarity");
+    if command.stream().tracks.are_live()
+        && let Some(warning) = state.unfamiliar.warning()
+    {
+        tell(format_args!(
+            "{warning}; this warning appears once, but each forecast has its familiarity"
+        ));
     }
     answers(&moments, state)
 }
@@ -172,7 +174,9 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
         });
         write_parts(stream.output.as_deref(), texts)?;
     }
-    state.unfamiliar.warn("");
+    if let Some(warning) = state.unfamiliar.warning() {
+        tell(format_args!("{warning}"));
+    }
     stream.warn_of_flood(lines, bytes);
     tell_what_was_estimated(&observed);
     Ok(())

@@ -58,6 +58,11 @@ function decodeMoment(data) {
   return { ...data, pedestrians: data.pedestrians.map(decodePedestrian) };
 }
 
+// The frame of a moment, or its time as the file has it.
+function whenWords(moment) {
+  return moment.when ?? `frame ${moment.frame}`;
+}
+
 // The last frame, counted from 0, with a known position of the pedestrian.
 function knownUntil(pedestrian) {
   return OBSERVED - 1 + pedestrian.truth.length;

@@ -136,10 +136,10 @@ function makePlayer(moments) {
       : `${best}; from positions rounded to the millimetre. `;
     byId("convention-words").textContent =
       measured + qualityWords(who) + familiarityWords(who) +
-      `Forecast by ${moment.forecaster}; ${moment.recording}, frame ${moment.frame}.`;
+      `Forecast by ${moment.forecaster}; ${moment.recording}, ${whenWords(moment)}.`;
     canvas.setAttribute(
       "aria-label",
-      `The scene from above: ${moment.pedestrians.length} pedestrians of ${moment.recording}, frame ${moment.frame}; pedestrian ${who.pedestrian} is chosen`,
+      `The scene from above: ${moment.pedestrians.length} pedestrians of ${moment.recording}, ${whenWords(moment)}; pedestrian ${who.pedestrian} is chosen`,
     );
     chart.draw(who, chosen);
     list.draw(who, errors, chosen);
@@ -191,7 +191,7 @@ function makePlayer(moments) {
       byId("choose-moment"),
       momentsOf(name).map((m) => {
         const people = moments[m].pedestrians.length;
-        return [m, [`frame ${moments[m].frame}`, `${people} ${people === 1 ? "pedestrian" : "pedestrians"}`].join(", ")];
+        return [m, [whenWords(moments[m]), `${people} ${people === 1 ? "pedestrian" : "pedestrians"}`].join(", ")];
       }),
       state.moment,
     );
