@@ -205,8 +205,8 @@ impl Answer {
         let [width, height] = area.size();
         if width * height * times.len() > Area::MOST_CELLS {
             return Err(Failure::invalid(format!(
-                "{} grids of {width} x {height} cells have more than {} numbers; ask for larger cells, a smaller area or \
-                 fewer times",
+                "{} grids of {width} x {height} cells have more than {} numbers; ask for larger cells, a smaller area \
+                 or fewer times",
                 times.len(),
                 Area::MOST_CELLS
             )));

@@ -410,8 +410,8 @@ impl LiveTracks {
 /// Sorts the pedestrians of one frame by id, and checks that the frame may follow the last one (`None`: no frame yet).
 ///
 /// # Errors
-/// [`LiveError`] for a frame that is not below 2^53 in size or not after the last, a position that is not finite or too far away, or a
-/// repeated pedestrian.
+/// [`LiveError`] for a frame that is not below 2^53 in size or not after the last, a position that is not finite or too
+/// far away, or a repeated pedestrian.
 pub fn checked_frame(
     frame: i64,
     last: Option<i64>,

@@ -216,7 +216,11 @@ def test_launch_files_give_names_and_parameters(robot, tmp_path):
     assert answer.joint and answer.header.frame_id == "map" and len(answer.pedestrians) == 2
     info = until(lambda: grids.take(N=100))[-1].info
     assert (info.width, info.height, round(info.origin.position.y, 6)) == (45, 33, -1.5)
-    notes = [f"{other} has no parameters for /hall/crowd", "/trakcs is no topic of the node", "rosout-logs has no effect"]
+    notes = [
+        f"{other} has no parameters for /hall/crowd",
+        "/trakcs is no topic of the node",
+        "rosout-logs has no effect",
+    ]
     for note in notes:
         assert robot.told().count(note) == 1, robot.told()
 
@@ -307,7 +311,11 @@ def test_what_is_wrong_is_told_and_survived(robot):
     assert len(walk(writer, forecasts, people, start=101.3)[-1].pedestrians) == 2
     until(lambda: report(diagnostics, "dropped") == 2)
     told = robot.told()
-    wrong = ["People is malformed", "left out: x or y is not finite", "tracks of 101 s come after those of 101.2 s; one tracker"]
+    wrong = [
+        "People is malformed",
+        "left out: x or y is not finite",
+        "tracks of 101 s come after those of 101.2 s; one tracker",
+    ]
     for line in [*wrong, "warning: time goes back from 101.2 s to 90 s, and all tracks begin anew"]:
         assert told.count(line) == 1, told
 
