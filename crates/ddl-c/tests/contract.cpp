@@ -186,7 +186,7 @@ void a_place_is_remembered(const ddl::Model& model) {
         REQUIRE(has(error_of([&] { ddl::Live(model, options); }, DDL_STATUS_FILE), "contract.memory"));
         ddl::Forecast forecast;
         for (int t = 0; t < 30; ++t) live.observe(t, meeting_at(t), forecast);
-        REQUIRE(has(error_of([&] { live.observe(30.5, meeting_at(30), forecast); }), "whole number"));
+        REQUIRE(has(error_of([&] { live.observe(30.5, meeting_at(30), forecast); }), "with `rate` a frame number"));
         REQUIRE(forecast.view().remembered > 0 && forecast.view().warning == nullptr);
         live.clear();
         live.observe(0, {}, forecast);
