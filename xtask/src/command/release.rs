@@ -1,10 +1,8 @@
 //! `cargo xtask release`: everything that a version consists of, built and checked; to publish it, a person has keys.
 
 use std::fs;
-use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context, Result, ensure};
@@ -36,7 +34,8 @@ pub(crate) struct Arguments {
 }
 
 type Step = (&'static str, fn(&Workspace, &Path) -> Result<()>);
-const STEPS: [Step; 6] = [
+const STEPS: [Step; 7] = [
+    ("crates", crates),
     ("wheels", wheels),
     ("npm package", npm_package),
     ("C library", c_library),
@@ -59,19 +58,11 @@ impl Arguments {
         }
         fs::create_dir_all(&files)?;
         fs::write(files.join("notes.md"), notes)?;
-        set_up(workspace)?;
-        let timed = |(name, step): Step| {
+        for (name, step) in STEPS {
             let start = Instant::now();
             step(workspace, &files).with_context(|| format!("release: {name}"))?;
             eprintln!("release: {name}: {} s", start.elapsed().as_secs());
-            anyhow::Ok(())
-        };
-        // What is built for a package is used by nothing else: no core waits for the other step.
-        thread::scope(|scope| {
-            let of_crates = scope.spawn(|| timed(("crates", crates)));
-            STEPS.into_iter().try_for_each(timed)?;
-            of_crates.join().unwrap_or_else(|panic| resume_unwind(panic))
-        })?;
+        }
         println!("{}", files.display());
         if self.dry_run {
             return Ok(());
@@ -100,6 +91,7 @@ fn notes(changelog: &str, dry_run: bool) -> Result<String> {
 /// Every crate as its package, in the order of their dependencies; each is built from it. cargo keeps the packages of a
 /// folder by name and version alone, so each run has a new one.
 fn crates(workspace: &Workspace, _: &Path) -> Result<()> {
+    set_up(workspace)?;
     let folder = tempfile::tempdir_in(workspace.path("target"))?;
     let publish = "publish --workspace --dry-run --allow-dirty --target-dir";
     let mut cargo = workspace.cargo(publish.split(' '));
