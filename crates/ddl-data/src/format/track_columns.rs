@@ -337,9 +337,11 @@ impl TrackColumns {
         let time = self.separator.with_point(&fields[self.header.frame]);
         let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
         if let Some(index) = self.header.nanoseconds {
-            frame += place(index)
-                .read(field::integer(&fields[index], "nanoseconds"))?
-                .div_euclid(1000);
+            let rest = place(index).read(field::integer(&fields[index], "nanoseconds"))?;
+            if !(0..1_000_000_000).contains(&rest) {
+                return Err(place(index).wrong(format!("{rest} nanoseconds are no part of a second")));
+            }
+            frame += rest / 1000;
         }
         let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
