@@ -66,6 +66,17 @@ pub(super) fn load<S: Simd>(simd: S, row: &[f32], first: usize) -> Floats<S> {
     }
 }
 
+/// [`load`] where `WHOLE` says that no number is beyond the end. In loops, the call for the end of a row would move
+/// accumulators from registers to memory, even if it is never made.
+#[inline(always)]
+pub(super) fn load_as<S: Simd, const WHOLE: bool>(simd: S, row: &[f32], first: usize) -> Floats<S> {
+    if WHOLE {
+        simd.load(row[first..].first_chunk().expect("a whole vector"))
+    } else {
+        load(simd, row, first)
+    }
+}
+
 /// Writes sixteen numbers to a row from `first`; drops those beyond its end.
 #[inline(always)]
 pub(super) fn store<S: Simd>(simd: S, value: Floats<S>, row: &mut [f32], first: usize) {
@@ -75,6 +86,16 @@ pub(super) fn store<S: Simd>(simd: S, value: Floats<S>, row: &mut [f32], first: 
         let mut numbers = [0.0; LANES];
         simd.store(value, &mut numbers);
         store_end(&numbers, row, first);
+    }
+}
+
+/// [`store`] where `WHOLE` says that no number is beyond the end.
+#[inline(always)]
+pub(super) fn store_as<S: Simd, const WHOLE: bool>(simd: S, value: Floats<S>, row: &mut [f32], first: usize) {
+    if WHOLE {
+        simd.store(value, row[first..].first_chunk_mut().expect("a whole vector"));
+    } else {
+        store(simd, value, row, first);
     }
 }
 

@@ -1,6 +1,6 @@
 //! Products of row-major matrices.
 
-use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, load_as, store, store_as};
 use ddl_simd::{Floats, LANES, Lanes, Simd};
 use fearless_simd::prelude::*;
 
@@ -109,17 +109,22 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
                 break;
             }
             let b = (&pairs[b.first..][..b.count], part);
+            let whole = (vector + V) * LANES <= y.count;
             let mut row = 0;
+            while whole && row + R <= rows {
+                tile::<S, R, V, true>(simd, a, b, (start, end), y, (row, vector));
+                row += R;
+            }
             while row + R <= rows {
-                tile::<S, R, V>(simd, a, b, (start, end), y, (row, vector));
+                tile::<S, R, V, false>(simd, a, b, (start, end), y, (row, vector));
                 row += R;
             }
             while R > 4 && row + 4 <= rows {
-                tile::<S, 4, V>(simd, a, b, (start, end), y, (row, vector));
+                tile::<S, 4, V, false>(simd, a, b, (start, end), y, (row, vector));
                 row += 4;
             }
             while row < rows {
-                tile::<S, 1, V>(simd, a, b, (start, end), y, (row, vector));
+                tile::<S, 1, V, false>(simd, a, b, (start, end), y, (row, vector));
                 row += 1;
             }
         }
@@ -129,7 +134,7 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
 /// The product of some rows and V vectors of columns. They are the vectors of `pairs` from `part` on, and the vectors
 /// of y from `vector` on.
 #[inline(always)]
-fn tile<S: Simd, const R: usize, const V: usize>(
+fn tile<S: Simd, const R: usize, const V: usize, const WHOLE: bool>(
     simd: S,
     a: MatrixColumns<'_>,
     (pairs, part): (&[[Lanes; 2]], usize),
@@ -147,7 +152,7 @@ fn tile<S: Simd, const R: usize, const V: usize>(
             sum[r][v] = match start {
                 Start::Row(numbers) => simd.load(&numbers[vector + v].0),
                 Start::Zero => simd.splat(0.0),
-                Start::There => load(simd, y.row_mut(row + r), (vector + v) * LANES),
+                Start::There => load_as::<S, WHOLE>(simd, y.row_mut(row + r), (vector + v) * LANES),
             };
         }
     }
@@ -168,7 +173,7 @@ fn tile<S: Simd, const R: usize, const V: usize>(
             if let End::Relu = end {
                 sum[r][v] = simd.splat(0.0).max(sum[r][v]);
             }
-            store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
+            store_as::<S, WHOLE>(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
         }
     }
 }
@@ -239,51 +244,47 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
     row: usize,
 ) {
     for first in (0..columns).step_by(V * LANES) {
-        let mut sum = [[simd.splat(0.0); V]; R];
-        let mut t = 0;
-        while t + UNROLLED <= a.rows {
-            for t in t..t + UNROLLED {
-                sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);
-            }
-            t += UNROLLED;
-        }
-        for t in t..a.rows {
-            sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);
-        }
-        for r in 0..R {
-            let into = sums.row_mut(row + r);
-            for v in 0..V {
-                // Added at the end, because partial sums have smaller rounding errors than one long sum.
-                let column = first + v * LANES;
-                let total = load(simd, into, column) + sum[r][v];
-                store(simd, total, into, column);
-            }
+        if first + V * LANES <= columns {
+            transposed_part::<S, R, V, true>(simd, a, b, sums, (row, first));
+        } else {
+            transposed_part::<S, R, V, false>(simd, a, b, sums, (row, first));
         }
     }
 }
 
-/// sum + a b for R numbers of a from `row` on, and V vectors of b from number `first` on.
+/// Adds A^T B for R columns of A from `row` on, and V vectors of B from number `first` on.
 #[inline(always)]
-fn add_outer_product<S: Simd, const R: usize, const V: usize>(
+fn transposed_part<S: Simd, const R: usize, const V: usize, const WHOLE: bool>(
     simd: S,
-    mut sum: Tile<S, R, V>,
-    a: &[f32],
-    row: usize,
-    b: &[f32],
-    first: usize,
-) -> Tile<S, R, V> {
-    let of_a = &a[row..][..R];
-    let mut of_b = [simd.splat(0.0); V];
-    for v in 0..V {
-        of_b[v] = load(simd, b, first + v * LANES);
-    }
-    for r in 0..R {
-        let of_a = simd.splat(of_a[r]);
+    a: MatrixColumns<'_>,
+    b: MatrixColumns<'_>,
+    sums: &mut MatrixColumnsMut<'_>,
+    (row, first): (usize, usize),
+) {
+    let mut sum = [[simd.splat(0.0); V]; R];
+    for t in 0..a.rows {
+        let of_a: &[f32; R] = a.row(t)[row..].first_chunk().expect("as many columns");
+        let of_row = b.row(t);
+        let mut of_b = [simd.splat(0.0); V];
         for v in 0..V {
-            sum[r][v] = of_a.mul_add(of_b[v], sum[r][v]);
+            of_b[v] = load_as::<S, WHOLE>(simd, of_row, first + v * LANES);
+        }
+        for r in 0..R {
+            let of_a = simd.splat(of_a[r]);
+            for v in 0..V {
+                sum[r][v] = of_a.mul_add(of_b[v], sum[r][v]);
+            }
         }
     }
-    sum
+    for r in 0..R {
+        let into = sums.row_mut(row + r);
+        for v in 0..V {
+            // Added at the end, because partial sums have smaller rounding errors than one long sum.
+            let column = first + v * LANES;
+            let total = load_as::<S, WHOLE>(simd, into, column) + sum[r][v];
+            store_as::<S, WHOLE>(simd, total, into, column);
+        }
+    }
 }
 
 /// Adds the sum of the rows to `sums`.
