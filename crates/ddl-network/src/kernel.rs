@@ -28,7 +28,7 @@ mod tests;
 mod threads;
 
 pub use buffer::Buffer;
-pub(crate) use buffer::KeepBuffers;
+pub(crate) use buffer::{KeepBuffers, add_to};
 pub(crate) use dropout::Dropout;
 pub use encoder_layer::Sizes;
 pub(crate) use encoder_layer::{CachedKeyValues, Dropouts, EncoderKernel};

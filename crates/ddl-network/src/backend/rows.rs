@@ -2,7 +2,7 @@
 //! gradient of its output becomes those of its inputs and weights. If another library continues with the tokens, its
 //! backward pass runs first, then the tape in reverse order.
 
-use crate::kernel::Buffer;
+use crate::kernel::{Buffer, add_to};
 use std::cell::RefCell;
 use std::ops::Deref;
 
@@ -49,7 +49,7 @@ impl Rows {
     pub fn add_gradient(&self, terms: Buffer) {
         let mut gradient = self.gradient.borrow_mut();
         match &mut *gradient {
-            Some(sums) => add(sums, &terms),
+            Some(sums) => add_to(sums, &terms),
             None => *gradient = Some(terms),
         }
     }
@@ -57,13 +57,7 @@ impl Rows {
     pub(super) fn add_gradient_at(&self, first: usize, terms: &[f32]) {
         let mut gradient = self.gradient.borrow_mut();
         let sums = gradient.get_or_insert_with(|| Buffer::zeros(self.numbers.len()));
-        add(&mut sums[first..], terms);
-    }
-}
-
-fn add(sums: &mut [f32], terms: &[f32]) {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        *sum += term;
+        add_to(&mut sums[first..], terms);
     }
 }
 

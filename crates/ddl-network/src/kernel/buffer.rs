@@ -159,6 +159,13 @@ impl Drop for Buffer {
     }
 }
 
+/// Adds terms to sums.
+pub(crate) fn add_to(sums: &mut [f32], terms: &[f32]) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum += term;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

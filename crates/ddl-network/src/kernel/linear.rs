@@ -1,7 +1,7 @@
 //! An affine map as a separate kernel, for embeddings and the fusion of tokens.
 
 use crate::kernel::affine::Affine;
-use crate::kernel::buffer::Buffer;
+use crate::kernel::buffer::{Buffer, add_to};
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::threads::run_each;
 use ddl_simd::{Dispatch, LANES, Simd, TiledKernel};
@@ -75,9 +75,7 @@ impl LinearKernel {
         let work = 2 * x.len() * self.map.outputs;
         run_each(self.dispatch, jobs, work);
         for sums in &sums {
-            for (sum, term) in of_weights.iter_mut().zip(sums.iter()) {
-                *sum += term;
-            }
+            add_to(of_weights, sums);
         }
         gx
     }

@@ -1,18 +1,11 @@
 //! Products of row-major matrices.
 
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, load_as, store, store_as};
-use ddl_simd::{Floats, LANES, Lanes, Simd};
+use ddl_simd::{LANES, Lanes, Simd};
 use fearless_simd::prelude::*;
 
 /// Columns of a block.
 pub(super) const BLOCK: usize = 2 * LANES;
-/// Steps of a product in one loop. The compiler unrolls a loop of this length, but not one of 32 steps, which takes a
-/// quarter more time.
-const UNROLLED: usize = 8;
-
-/// Accumulators of a product: `R` rows of `V` times sixteen numbers.
-type Tile<S, const R: usize, const V: usize> = [[Floats<S>; V]; R];
-
 /// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Matrix {
@@ -144,7 +137,7 @@ fn tile<S: Simd, const R: usize, const V: usize, const WHOLE: bool>(
 ) {
     let mut of_a: [&[f32]; R] = [&[]; R];
     for r in 0..R {
-        of_a[r] = a.row(row + r);
+        of_a[r] = &a.row(row + r)[..pairs.len()];
     }
     let mut sum = [[simd.splat(0.0); V]; R];
     for r in 0..R {
@@ -156,15 +149,15 @@ fn tile<S: Simd, const R: usize, const V: usize, const WHOLE: bool>(
             };
         }
     }
-    let (blocks, rest) = pairs.as_chunks();
-    for (block, of_b) in blocks.iter().enumerate() {
-        sum = add_block(simd, sum, of_a, block * BLOCK, of_b, part);
-    }
-    for (t, of_b) in (blocks.len() * BLOCK..).zip(rest) {
+    for (t, of_row) in pairs.iter().enumerate() {
+        let mut of_b = [simd.splat(0.0); V];
+        for v in 0..V {
+            of_b[v] = simd.load(&of_row[part + v].0);
+        }
         for r in 0..R {
             let of_a = simd.splat(of_a[r][t]);
             for v in 0..V {
-                sum[r][v] = of_a.mul_add(simd.load(&of_b[part + v].0), sum[r][v]);
+                sum[r][v] = of_a.mul_add(of_b[v], sum[r][v]);
             }
         }
     }
@@ -176,37 +169,6 @@ fn tile<S: Simd, const R: usize, const V: usize, const WHOLE: bool>(
             store_as::<S, WHOLE>(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
         }
     }
-}
-
-/// sum + A B for 32 columns of A from `first`. At this usual width the compiler knows all bounds.
-#[inline(always)]
-fn add_block<S: Simd, const R: usize, const V: usize>(
-    simd: S,
-    mut sum: Tile<S, R, V>,
-    a: [&[f32]; R],
-    first: usize,
-    b: &[[Lanes; 2]; BLOCK],
-    part: usize,
-) -> Tile<S, R, V> {
-    let mut of_a = [&[0.0; BLOCK]; R];
-    for r in 0..R {
-        of_a[r] = a[r][first..].first_chunk().expect("as many columns as rows of B");
-    }
-    for group in 0..BLOCK / UNROLLED {
-        for t in group * UNROLLED..(group + 1) * UNROLLED {
-            let mut of_b = [simd.splat(0.0); V];
-            for v in 0..V {
-                of_b[v] = simd.load(&b[t][part + v].0);
-            }
-            for r in 0..R {
-                let of_a = simd.splat(of_a[r][t]);
-                for v in 0..V {
-                    sum[r][v] = of_a.mul_add(of_b[v], sum[r][v]);
-                }
-            }
-        }
-    }
-    sum
 }
 
 /// Adds A^T B.
@@ -223,38 +185,27 @@ pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
     assert_eq!(a.rows, b.rows, "rows of a product");
     assert_eq!(sum.len(), rows * columns, "entries of a product");
     let sum = &mut MatrixColumnsMut::whole(sum, columns);
-    let mut row = 0;
-    while row + R <= rows {
-        transposed_tile::<S, R, V>(simd, a, b, columns, sum, row);
-        row += R;
-    }
-    while row < rows {
-        transposed_tile::<S, 1, V>(simd, a, b, columns, sum, row);
-        row += 1;
-    }
-}
-
-#[inline(always)]
-fn transposed_tile<S: Simd, const R: usize, const V: usize>(
-    simd: S,
-    a: MatrixColumns<'_>,
-    b: MatrixColumns<'_>,
-    columns: usize,
-    sums: &mut MatrixColumnsMut<'_>,
-    row: usize,
-) {
     for first in (0..columns).step_by(V * LANES) {
-        if first + V * LANES <= columns {
-            transposed_part::<S, R, V, true>(simd, a, b, sums, (row, first));
-        } else {
-            transposed_part::<S, R, V, false>(simd, a, b, sums, (row, first));
+        let whole = first + V * LANES <= columns;
+        let mut row = 0;
+        while whole && row + R <= rows {
+            transposed_tile::<S, R, V, true>(simd, a, b, sum, (row, first));
+            row += R;
+        }
+        while row + R <= rows {
+            transposed_tile::<S, R, V, false>(simd, a, b, sum, (row, first));
+            row += R;
+        }
+        while row < rows {
+            transposed_tile::<S, 1, V, false>(simd, a, b, sum, (row, first));
+            row += 1;
         }
     }
 }
 
 /// Adds A^T B for R columns of A from `row` on, and V vectors of B from number `first` on.
 #[inline(always)]
-fn transposed_part<S: Simd, const R: usize, const V: usize, const WHOLE: bool>(
+fn transposed_tile<S: Simd, const R: usize, const V: usize, const WHOLE: bool>(
     simd: S,
     a: MatrixColumns<'_>,
     b: MatrixColumns<'_>,

@@ -3,7 +3,7 @@
 
 use crate::kernel::add_norm::{AddNorm, Decisions};
 use crate::kernel::affine::Affine;
-use crate::kernel::buffer::Buffer;
+use crate::kernel::buffer::{Buffer, add_to};
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::encoder_layer::forward::ROWS;
@@ -40,9 +40,7 @@ impl EncoderKernel {
         let mut grads = Gradients { w1, b1, w2, b2 };
         self.feed_forward
             .backward(&forward_results.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
-        for (sum, term) in of_z.iter_mut().zip(through.iter()) {
-            *sum += term;
-        }
+        add_to(&mut of_z, &through);
         // The buffers are reused; their contents are no longer needed.
         let (mut gx, mut of_mixed) = (through, of_fed);
         let first = Sublayer {

@@ -4,7 +4,7 @@
 
 use std::ops::DerefMut;
 
-use crate::kernel::buffer::Buffer;
+use crate::kernel::buffer::{Buffer, add_to};
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::feed_forward::dropout::UnitDecisions;
@@ -43,9 +43,7 @@ impl FeedForward {
         let decisions = dropout.and_then(|dropout| UnitDecisions::new(dropout, x.len() / width));
 
         for row in gy.chunks_exact(width) {
-            for (sum, term) in grads.b2.iter_mut().zip(row) {
-                *sum += term;
-            }
+            add_to(&mut grads.b2, row);
         }
         let group = self.units().div_ceil(GROUPS);
         let numbers = x.len().min(SPAN * width);
@@ -66,9 +64,7 @@ impl FeedForward {
             run_each(self.dispatch, jobs, 5 * x.len() * hidden);
             gx.fill(0.0);
             for (_, scratch) in &parts {
-                for (sum, term) in gx.iter_mut().zip(scratch.gx.iter()) {
-                    *sum += term;
-                }
+                add_to(gx, &scratch.gx);
             }
         }
     }
@@ -168,12 +164,6 @@ fn deactivate<S: Simd>(simd: S, hidden: &[f32], scale: f32, gradient: &mut [f32]
         let scaled = load(simd, gradient, first) * scale;
         let changed = load(simd, hidden, first).simd_le(0.0).select(simd.splat(0.0), scaled);
         store(simd, changed, gradient, first);
-    }
-}
-
-fn add_to(sums: &mut [f32], terms: &[f32]) {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        *sum += term;
     }
 }
 

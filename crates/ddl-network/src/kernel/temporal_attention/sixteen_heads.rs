@@ -3,6 +3,7 @@
 //! Rows and heads are one index here, because every row has a separate cache. Scores and weights, one for each head,
 //! are in the order that transposing pieces of four lanes gives: head 4 k + i in lane 4 i + k.
 
+use crate::kernel::buffer::add_to;
 use crate::kernel::heads::HEAD_WIDTH;
 use ddl_simd::{DEPTH, Floats, LANES, Lanes, Simd, Vectors};
 use fearless_simd::prelude::*;
@@ -108,9 +109,7 @@ impl SixteenHeads {
         } else {
             let mut numbers = [0.0; GROUP_NUMBERS];
             stored(simd, terms, &mut numbers);
-            for (sum, term) in into.iter_mut().zip(&numbers[..self.numbers]) {
-                *sum += term;
-            }
+            add_to(into, &numbers[..self.numbers]);
         }
     }
 
