@@ -41,7 +41,8 @@ fn check_conditions(row: &ResultRow) {
         assert_eq!((conditions.seed, conditions.epochs), (Some(5), Some(2)));
         assert!(words(&conditions.training_subset).contains("200 pedestrians"));
         let selection = words(&conditions.selection);
-        let on_test = conditions.protocol == Protocol::Published;
+        let of_last = conditions.forecaster.contains("last epoch");
+        let on_test = conditions.protocol == Protocol::Published && !of_last;
         assert_eq!(selection.contains("TEST"), on_test, "{selection}");
     }
 }
@@ -100,6 +101,25 @@ fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
     }
 }
 
+/// The helps of the true future are taken away one after the other. The two epochs of the run are equal.
+fn check_oracle(rows: &[&ResultRow]) {
+    let of = |name: &str| {
+        &rows
+            .iter()
+            .find(|row| row.conditions.forecaster == name)
+            .unwrap()
+            .scores
+    };
+    let of_last = "DDL of its last epoch";
+    assert_eq!(of("DDL"), of(of_last));
+    let without_frame = of(&format!("{of_last}, without the future frame"));
+    let one_sample = of(&format!("{of_last}, without the future frame, one noise sample"));
+    assert_ne!(without_frame.goal_fde, of(of_last).goal_fde);
+    assert_eq!(without_frame.goal_fde, one_sample.goal_fde);
+    assert_eq!(one_sample.hypotheses, 1);
+    assert!(without_frame.min_ade < one_sample.min_ade);
+}
+
 fn of_protocol(rows: &[ResultRow], protocol: Protocol) -> Vec<&ResultRow> {
     rows.iter().filter(|row| row.conditions.protocol == protocol).collect()
 }
@@ -121,6 +141,7 @@ fn a_number_goes_from_the_model_to_the_page() {
         check_table(protocol, &rows, 60);
         check_certificates(protocol, &rows);
     }
+    check_oracle(&of_protocol(report.rows(), Protocol::Published));
     returns_at_once(&place, EVALUATE);
 
     // Moments: the certified forecasts under `fair`.

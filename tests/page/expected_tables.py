@@ -271,10 +271,9 @@ def by_protocol(groups, header):
             name = c["forecaster"]
             if not (trained or (goals and "the TRUE end" not in name) or "nearest the TRUE end" in name):
                 continue
+            candidates = str(line["rows"][0]["scores"]["hypotheses"])
             if group.protocol == "published":
-                candidates = " x ".join(["20 goals"] * goals + ["20 samples"] * trained)
-            else:
-                candidates = str(line["rows"][0]["scores"]["hypotheses"])
+                candidates = " x ".join(["20 goals"] * goals + [f"{candidates} samples"] * (candidates != "1"))
             rows.append([line["label"], group.protocol, candidates, *group.cells(line, header[3:-1])])
     return rows
 

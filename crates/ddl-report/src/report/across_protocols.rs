@@ -7,12 +7,13 @@ use crate::document::{Part, Table};
 use crate::report::cells::{NOTHING, errors};
 use crate::report::group::{ResultGroup, TableLine};
 
-const NOTE: &str = "Every line has the same windows and folds. Under `published` the goal of each pedestrian is chosen \
-    with the true end, among the goals of the published estimator, whose query reads one future frame. Then the best \
-    of 20 noise samples on it is kept, of the epoch that is best on test pedestrians; steps are plain Euler steps. \
-    Under `fair`, the line with the published goals, all 20 kept, has the same estimator without the future frame, and \
-    only the best of its 20 hypotheses is chosen. The other lines under `fair` have the forecaster's own goals, and \
-    under `single` one representative goal. The conditions below the tables above name the training of each line.";
+const NOTE: &str = "Every line has the same windows and folds. Under `published` the goal of each pedestrian is \
+    chosen with the true end, among the goals of the published estimator, whose query reads one future frame. Then \
+    the best of 20 noise samples on it is kept, of the epoch that is best on test pedestrians; steps are plain Euler \
+    steps. Its other lines take the chosen epoch, the future frame and the samples away, one after the other. Under \
+    `fair`, the line with the published goals, all 20 kept, has the same estimator without the future frame, and only \
+    the best of its 20 hypotheses is chosen. The other lines under `fair` have the forecaster's own goals, and under \
+    `single` one representative goal. The conditions below the tables above name the training of each line.";
 
 /// The lines of forecasters with goals, by protocol, together with `published` on the same windows.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
@@ -56,9 +57,12 @@ fn table(groups: &[&ResultGroup<'_>]) -> Table {
             }
             let candidates = match group.protocol {
                 Protocol::Published => {
-                    let goals = line.rows[0].scores.goal_fde.map(|_| "20 goals");
-                    let samples = line.conditions().epochs.map(|_| "20 samples");
-                    let chosen_from: Vec<&str> = goals.into_iter().chain(samples).collect();
+                    let goals = line.rows[0].scores.goal_fde.map(|_| "20 goals".to_owned());
+                    let samples = match line.rows[0].scores.hypotheses {
+                        1 => None,
+                        count => Some(format!("{count} samples")),
+                    };
+                    let chosen_from: Vec<String> = goals.into_iter().chain(samples).collect();
                     chosen_from.join(" x ")
                 }
                 _ => line.rows[0].scores.hypotheses.to_string(),

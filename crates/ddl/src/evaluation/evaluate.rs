@@ -1,7 +1,7 @@
 //! Evaluation of a model and the baselines on the windows of a test set.
 
 use crate::error::DdlError;
-use crate::evaluation::published::Published;
+use crate::evaluation::published::{Published, SAMPLES};
 use crate::evaluation::rows::{NamedForecasts, ResultRows};
 use crate::evaluation::straight_lines::{straight_lines, weighted};
 use crate::evaluation::variant::{EvaluationVariant, GivenGoals, VariantMotion, memory_words};
@@ -13,9 +13,9 @@ use crate::run::words;
 use crate::windows::split::Split;
 use crate::windows::test_set::TestSet;
 use ddl_core::{Forecast, ForecastError, Forecaster as _, WeightedGoals, WorkDone};
-use ddl_data::{Dataset, Window};
+use ddl_data::{Dataset, Position, Window};
 use ddl_eval::{Protocol, ResultRow};
-use ddl_goal::{GoalSet, QuerySpan};
+use ddl_goal::{GoalEstimator, GoalSet, QuerySpan};
 use ddl_report::{ForecastSnapshot, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -27,8 +27,6 @@ const ALONE: [Protocol; 3] = [Protocol::Fair, Protocol::Single, Protocol::Joint]
 const WATCHING: [Protocol; 2] = [Protocol::Online, Protocol::OnlineSingle];
 /// The goals of the straight lines, without the protocol `published`.
 const ESTIMATED_GOALS: &str = "the estimated goals";
-/// Largest number of test pedestrians on which the published protocol chooses its epoch.
-const SELECTION_PEDESTRIANS: usize = 250;
 
 /// What to evaluate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -103,7 +101,10 @@ pub fn evaluate(
     )?;
     let asked = |some: &[Protocol]| some.iter().any(|p| request.protocols.contains(p));
     let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
-    let total = test.pedestrians() * passes.iter().filter(|asked| **asked).count();
+    let mut total = test.pedestrians() * passes.iter().filter(|asked| **asked).count();
+    if let (true, Some(run)) = (asked(&[Protocol::Published]), model.run()) {
+        total += run.kept_epochs()?.len() * test.headline().map(Window::len).sum::<usize>();
+    }
     if asked(&WATCHING) {
         model.goal_model().recalled_per_pedestrian()?;
     }
@@ -116,7 +117,7 @@ pub fn evaluate(
         total,
     };
     let mut rows = Vec::new();
-    if request.protocols.contains(&Protocol::Published) {
+    if asked(&[Protocol::Published]) {
         rows.extend(measuring.published()?);
     }
     let remembering = |what| model.goal_model().remembering(&test.windows, dataset, what);
@@ -241,6 +242,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     admitted,
                     variant.change.as_deref(),
                     variant.goal_words(model),
+                    words::selection(model.config().patience),
                 ));
             }
         }
@@ -250,8 +252,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             let recipe = format!("goals {goals}");
             named_forecasts.push(NamedForecasts::lines_to(ESTIMATED_GOALS, recipe, lines));
         }
-        let selection = words::selection(model.config().patience);
-        self.rows(protocol, selection).of(&named_forecasts)
+        self.rows(protocol).of(&named_forecasts)
     }
 
     fn scenes(&self, forecasts: &[Forecast]) -> Vec<(Window, Forecast)> {
@@ -275,44 +276,45 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         )?)
     }
 
+    /// Besides the model, its rows with one help of the true future after the other taken away.
     fn published(&mut self) -> Result<Vec<ResultRow>, DdlError> {
         let protocol = Protocol::Published;
-        let goal_model = self.model.goal_model();
-        let estimator = goal_model.published_estimator(QuerySpan::PublishedFuture)?;
-        let mut pedestrians = 0;
-        let windows: Vec<Window> = self
-            .test
-            .headline()
-            .take_while(|window| {
-                let first = pedestrians == 0;
-                pedestrians += window.len();
-                first || pedestrians <= SELECTION_PEDESTRIANS
-            })
-            .cloned()
-            .collect();
-        let model = self.model;
-        let tick = || self.report(0, protocol);
-        let best = Published::best_on_test(model, &estimator, &windows, tick)?;
-        let goal = "the estimated goal nearest the TRUE end";
-        let test = self.test;
-        let mut forecasts = self.forecast(protocol, &test.windows, 1, |windows| {
-            let goals = sets::nearest_true_end(&estimator, windows)?;
-            let certain: Vec<Vec<WeightedGoals>> = goals
-                .iter()
-                .map(|goals| goals.iter().map(|&goal| WeightedGoals::certain(goal)).collect())
-                .collect();
-            let lines = straight_lines(windows, certain)?;
-            Ok(Forecasts {
-                model: vec![best.forecast_towards(windows, &goals)?],
-                lines,
-            })
+        let (model, test) = (self.model, self.test);
+        let estimator = |query| model.goal_model().published_estimator(query);
+        let (reading_on, observed) = (estimator(QuerySpan::PublishedFuture)?, estimator(QuerySpan::Observed)?);
+        let count = |windows: &[Window]| self.report(windows.iter().map(Window::len).sum(), protocol);
+        let [best, last] = Published::best_on_test_and_last(model, &reading_on, test.headline(), count)?;
+        let mut variants = vec![(&best, &reading_on, SAMPLES, None)];
+        variants.push((&last, &reading_on, SAMPLES, Some("of its last epoch")));
+        if model.config().star.variant.uses_goal() {
+            let change = "of its last epoch, without the future frame";
+            variants.push((&last, &observed, SAMPLES, Some(change)));
+            let change = "of its last epoch, without the future frame, one noise sample";
+            variants.push((&last, &observed, 1, Some(change)));
+        }
+        let forecasts = self.forecast(protocol, &test.windows, variants.len(), |windows| {
+            let goals = sets::nearest_true_end(&reading_on, windows)?;
+            let certain = |goals: &Vec<Position>| goals.iter().map(|&goal| WeightedGoals::certain(goal)).collect();
+            let lines = straight_lines(windows, goals.iter().map(certain).collect())?;
+            let of_variant = |&(network, estimator, samples, _): &(&Published, &GoalEstimator, usize, _)| {
+                network.forecast_towards(windows, &sets::nearest_true_end(estimator, windows)?, samples)
+            };
+            let model = variants.iter().map(of_variant).collect::<Result<_, _>>()?;
+            Ok(Forecasts { model, lines })
         })?;
-        let words = model.goal_model().words();
-        let selection = format!("best kept epoch on up to {SELECTION_PEDESTRIANS} TEST pedestrians");
-        self.rows(protocol, &selection).of(&[
-            NamedForecasts::model(&model.name(), forecasts.model.remove(0), None, words),
-            NamedForecasts::lines_to(goal, "goals of the published estimator".to_owned(), forecasts.lines),
-        ])
+        let goals = model.goal_model().words();
+        let of_variant = |(&(.., change), forecasts): (&(_, _, _, Option<&str>), Vec<Forecast>)| {
+            let selection = change.map_or("best kept epoch on the TEST pedestrians", |_| words::selection(None));
+            NamedForecasts::model(&model.name(), forecasts, change, goals.clone(), selection)
+        };
+        let mut named: Vec<_> = variants.iter().zip(forecasts.model).map(of_variant).collect();
+        let recipe = "goals of the published estimator".to_owned();
+        named.push(NamedForecasts::lines_to(
+            "the estimated goal nearest the TRUE end",
+            recipe,
+            forecasts.lines,
+        ));
+        self.rows(protocol).of(&named)
     }
 
     /// Forecasts all windows in several variants, in chunks. The model sees the futures only if the protocol shows
@@ -354,12 +356,11 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         Ok(forecasts)
     }
 
-    fn rows<'b>(&'b self, protocol: Protocol, selection: &'b str) -> ResultRows<'b> {
+    fn rows(&self, protocol: Protocol) -> ResultRows<'_> {
         ResultRows {
             model: self.model,
             test: self.test,
             protocol,
-            selection,
             commit: &self.request.commit,
         }
     }

@@ -13,9 +13,12 @@ use ddl_eval::Scores;
 use ddl_goal::GoalEstimator;
 use ddl_network::{ForecastWindows, NetworkFrame, Noise};
 
-const SAMPLES: usize = 20;
+/// Windows that the choice of an epoch forecasts between two reports.
+const WINDOWS_AT_ONCE: usize = 32;
+/// Noise samples for the goal of a pedestrian.
+pub(crate) const SAMPLES: usize = 20;
 
-/// The model as the published code evaluates it: 20 noise samples to the estimated goal nearest the TRUE endpoint, with
+/// The model as the published code evaluates it: noise samples to the estimated goal nearest the TRUE endpoint, with
 /// plain Euler steps.
 #[derive(Debug)]
 pub(crate) struct Published {
@@ -24,14 +27,14 @@ pub(crate) struct Published {
 }
 
 impl Published {
-    /// Chooses the saved epoch that is best on the given TEST windows, as the published code does. A fair evaluation
-    /// must not do this.
-    pub(crate) fn best_on_test(
+    /// The saved epoch that is best on the given TEST windows, which the published code chooses and a fair evaluation
+    /// must not; and the last one.
+    pub(crate) fn best_on_test_and_last<'a>(
         model: &Ddl,
         estimator: &GoalEstimator,
-        windows: &[Window],
-        mut tick: impl FnMut() -> Result<(), DdlError>,
-    ) -> Result<Self, DdlError> {
+        windows: impl Iterator<Item = &'a Window>,
+        mut done: impl FnMut(&[Window]) -> Result<(), DdlError>,
+    ) -> Result<[Self; 2], DdlError> {
         let Some(run) = model.run() else {
             return Err(model.source().wrong(
             "keeps one set of weights, but the protocol `published` chooses among epochs; evaluate it under `fair` and \
@@ -54,31 +57,40 @@ impl Published {
                  among several; train it again with --patience 0",
             ));
         }
-        let goals = sets::nearest_true_end(estimator, windows)?;
-        let mut best: Option<(f64, Self)> = None;
-        for epoch in run.kept_epochs()? {
-            tick()?;
+        let windows: Vec<Window> = windows.cloned().collect();
+        let goals = sets::nearest_true_end(estimator, &windows)?;
+        let of_epoch = |epoch| {
             let network = model.network_of_epoch(run, epoch)?;
-            let candidate = Self {
-                network,
-                seed: model.config().training.seed,
-            };
-            let forecasts = candidate.forecast_towards(windows, &goals)?;
-            let error = Scores::evaluate(windows, &forecasts)?.min_ade;
-            if best.as_ref().is_none_or(|(least, _)| error < *least) {
-                best = Some((error, candidate));
+            let seed = config.training.seed;
+            Ok::<_, DdlError>(Self { network, seed })
+        };
+        let epochs = run.kept_epochs()?;
+        let Some(&last) = epochs.last() else {
+            return Err(DdlError::run(run.path(), "has no saved epochs; train it again"));
+        };
+        let mut best = (f64::INFINITY, last);
+        for epoch in epochs {
+            let network = of_epoch(epoch)?;
+            let mut forecasts = Vec::new();
+            for (windows, goals) in windows.chunks(WINDOWS_AT_ONCE).zip(goals.chunks(WINDOWS_AT_ONCE)) {
+                forecasts.extend(network.forecast_towards(windows, goals, SAMPLES)?);
+                done(windows)?;
+            }
+            let error = Scores::evaluate(&windows, &forecasts)?.min_ade;
+            if error < best.0 {
+                best = (error, epoch);
             }
         }
-        let (_, best) = best.ok_or_else(|| DdlError::run(run.path(), "has no saved epochs; train it again"))?;
-        Ok(best)
+        Ok([of_epoch(best.1)?, of_epoch(last)?])
     }
 
-    /// Makes 20 noise samples for the single goal of every pedestrian. The steps are plain Euler steps. A network that
+    /// Makes noise samples for the single goal of every pedestrian. The steps are plain Euler steps. A network that
     /// was trained with bounded steps keeps them, because its output is dimensionless.
     pub(crate) fn forecast_towards(
         &self,
         windows: &[Window],
         goals: &[Vec<Position>],
+        samples: usize,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let config = self.network.config();
         let single: Vec<Vec<Vec<Position>>> = goals
@@ -86,7 +98,7 @@ impl Published {
             .map(|goals| goals.iter().map(|&goal| vec![goal]).collect())
             .collect();
         let noise = Noise::Draws {
-            count: SAMPLES,
+            count: samples,
             seed: self.seed,
         };
         let integrator = match config.frame {
@@ -113,8 +125,8 @@ impl Published {
                     hypotheses: rollout.hypotheses,
                     rolled_out: rollout.positions,
                     factors: rollout.factors,
-                    weights: vec![1.0 / SAMPLES as f64; goals.len() * SAMPLES],
-                    goals: goals.iter().flat_map(|&goal| [goal; SAMPLES]).collect(),
+                    weights: vec![1.0 / samples as f64; goals.len() * samples],
+                    goals: goals.iter().flat_map(|&goal| vec![goal; samples]).collect(),
                 };
                 walked.forecast()
             })

@@ -13,15 +13,22 @@ use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 #[derive(Debug)]
 pub(crate) struct NamedForecasts {
     forecaster: String,
-    /// True for the trained model. False for straight lines to goals, which depend only on the run's seed.
-    by_model: bool,
+    /// How the epoch of the trained model was chosen; `None` for straight lines to goals, which depend only on the
+    /// run's seed.
+    selection: Option<String>,
     goals: String,
     forecasts: Vec<Forecast>,
 }
 
 impl NamedForecasts {
     /// Forecasts of the model of that name, unchanged or with a change; `goals` names the origin of its goals.
-    pub(crate) fn model(name: &str, forecasts: Vec<Forecast>, change: Option<&str>, goals: String) -> Self {
+    pub(crate) fn model(
+        name: &str,
+        forecasts: Vec<Forecast>,
+        change: Option<&str>,
+        goals: String,
+        selection: &str,
+    ) -> Self {
         Self {
             forecaster: match change {
                 None => name.to_owned(),
@@ -29,7 +36,7 @@ impl NamedForecasts {
                 Some(change) if name == name::NAME => format!("{name} {change}"),
                 Some(change) => format!("{name}, {change}"),
             },
-            by_model: true,
+            selection: Some(selection.to_owned()),
             goals,
             forecasts,
         }
@@ -39,7 +46,7 @@ impl NamedForecasts {
     pub(crate) fn lines_to(goal: &str, recipe: String, forecasts: Vec<Forecast>) -> Self {
         Self {
             forecaster: format!("straight line to {goal}"),
-            by_model: false,
+            selection: None,
             goals: recipe,
             forecasts,
         }
@@ -52,7 +59,6 @@ pub(crate) struct ResultRows<'a> {
     pub(crate) model: &'a Ddl,
     pub(crate) test: &'a TestSet,
     pub(crate) protocol: Protocol,
-    pub(crate) selection: &'a str,
     pub(crate) commit: &'a str,
 }
 
@@ -70,8 +76,8 @@ impl ResultRows<'_> {
             for one in named_forecasts {
                 let of_rule: Vec<Forecast> = indices.iter().map(|&i| one.forecasts[i].clone()).collect();
                 let mut conditions = plain.clone();
-                if one.by_model {
-                    conditions = self.of_the_model(conditions, &one.goals);
+                if one.selection.is_some() {
+                    conditions = self.of_the_model(conditions, one);
                 } else {
                     conditions.seed = Some(self.model.config().training.seed);
                     conditions.recipe = Some(one.goals.clone());
@@ -113,17 +119,17 @@ impl ResultRows<'_> {
         format!("{rounded}; trained on `{convention}` without {fold}")
     }
 
-    fn of_the_model(&self, plain: Conditions, goals: &str) -> Conditions {
+    fn of_the_model(&self, plain: Conditions, one: &NamedForecasts) -> Conditions {
         let config = self.model.config();
         let training = &config.training;
         Conditions {
             variant: Some(config.star.name()),
             seed: Some(training.seed),
             epochs: Some(training.epochs),
-            selection: Some(self.selection.to_owned()),
+            selection: one.selection.clone(),
             device: self.model.device().words().to_owned(),
             training_subset: subset(training),
-            recipe: Some(recipe(training, goals) + &self.besides()),
+            recipe: Some(recipe(training, &one.goals) + &self.besides()),
             ..plain
         }
     }
