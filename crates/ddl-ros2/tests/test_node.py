@@ -330,8 +330,7 @@ def test_a_flood_is_forecast_reported_and_ended(robot):
     near = {str(i): (i % 20, i // 20) for i in range(40)}
     for k in range(10):
         writer.write(people(100 + 0.1 * k, near | ({"far": (3000, 4000)} if k > 6 else {})))
-        time.sleep(0.3)
-    until(lambda: len(grids.read(N=100)) > 8)
+        until(lambda: len(grids.read(N=100)) >= k)
     assert "the grids keep their last area" in robot.told()
     forecasts.take(N=1000)
     crowd = {str(i): (i % 20, i // 20) for i in range(150)}
