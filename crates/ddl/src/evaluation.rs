@@ -3,7 +3,8 @@
 pub(crate) mod comparison;
 pub(crate) mod evaluate;
 pub(crate) mod goals;
-pub(crate) mod published;
+pub(crate) mod parts;
+mod published;
 pub(crate) mod record;
 pub(crate) mod results;
 pub(crate) mod rows;

@@ -105,7 +105,7 @@ pub use with_report::*;
 #[cfg(feature = "training")]
 mod with_training {
     pub use crate::training::best_epoch::best_epoch;
-    pub use crate::training::request::{KeptEpochs, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
+    pub use crate::training::request::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
     pub use crate::training::train;
 }
 #[cfg(feature = "training")]

@@ -15,8 +15,8 @@ use clap::{Args, ValueEnum};
 use ddl::data::{Convention, Dataset, Fold, Window};
 use ddl::network::{BackboneKind, LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{
-    BuiltinModel, DdlError, DeviceChoice, GoalModel, GoalRecipe, KeptEpochs, ModelSource, RunDirectory,
-    TrainingRequest, TrainingStage, ValidationPart, Variant,
+    BuiltinModel, DdlError, DeviceChoice, GoalModel, GoalRecipe, ModelSource, RunDirectory, TrainingRequest,
+    TrainingStage, ValidationPart, Variant,
 };
 use std::path::PathBuf;
 
@@ -111,10 +111,6 @@ pub(crate) struct Train {
     /// Stop when the goals are trained; the same command without this option continues
     #[arg(long)]
     only_goals: bool,
-    /// Keep the weights of the last epoch only: saves disk space, but `--protocol published` has no epochs to choose
-    /// from
-    #[arg(long)]
-    last_epoch_only: bool,
     /// Directory of the run
     #[arg(long)]
     out: PathBuf,
@@ -146,9 +142,6 @@ impl Train {
             let validation = part.share;
             bail!(DdlError::Patience { patience, validation });
         }
-        if patience > 0 && self.last_epoch_only {
-            bail!("--last-epoch-only discards the best epoch: add --patience 0 to use the last epoch as the model");
-        }
         let from = self.starting_model(&dataset, &fold, &part)?;
         let mut goals = self.goal_recipe(from.is_some())?;
         let (mut star, training) = self.recipe(from.is_some());
@@ -164,9 +157,6 @@ impl Train {
         request.patience = (patience > 0).then_some(patience);
         request.goals = goals;
         request.units = self.recordings.units.told()?;
-        if self.last_epoch_only {
-            request.kept_epochs = KeptEpochs::Last;
-        }
         if self.only_goals {
             request.until = TrainingStage::Goals;
         }

@@ -159,7 +159,7 @@ impl Drop for Buffer {
     }
 }
 
-/// Adds terms to sums.
+/// Adds terms to sums, as far as both reach.
 pub(crate) fn add_to(sums: &mut [f32], terms: &[f32]) {
     for (sum, term) in sums.iter_mut().zip(terms) {
         *sum += term;

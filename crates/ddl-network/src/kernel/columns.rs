@@ -9,7 +9,7 @@ pub(super) struct MatrixColumns<'a> {
     pub(super) rows: usize,
     /// Length of a row of the whole matrix.
     stride: usize,
-    count: usize,
+    pub(super) count: usize,
 }
 
 /// A whole matrix whose numbers are overwritten or added to.

@@ -6,6 +6,7 @@ use fearless_simd::prelude::*;
 
 /// Columns of a block.
 pub(super) const BLOCK: usize = 2 * LANES;
+
 /// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Matrix {
@@ -183,6 +184,7 @@ pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
     sum: &mut [f32],
 ) {
     assert_eq!(a.rows, b.rows, "rows of a product");
+    assert_eq!(b.count, columns, "columns of a product");
     assert_eq!(sum.len(), rows * columns, "entries of a product");
     let sum = &mut MatrixColumnsMut::whole(sum, columns);
     for first in (0..columns).step_by(V * LANES) {

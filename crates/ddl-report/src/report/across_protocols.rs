@@ -10,10 +10,11 @@ use crate::report::group::{ResultGroup, TableLine};
 const NOTE: &str = "Every line has the same windows and folds. Under `published` the goal of each pedestrian is \
     chosen with the true end, among the goals of the published estimator, whose query reads one future frame. Then \
     the best of 20 noise samples on it is kept, of the epoch that is best on test pedestrians; steps are plain Euler \
-    steps. Its other lines take the chosen epoch, the future frame and the samples away, one after the other. Under \
-    `fair`, the line with the published goals, all 20 kept, has the same estimator without the future frame, and only \
-    the best of its 20 hypotheses is chosen. The other lines under `fair` have the forecaster's own goals, and under \
-    `single` one representative goal. The conditions below the tables above name the training of each line.";
+    steps. Its lines of the last epoch then do without that frame, and then without noise too; their goals are still \
+    those nearest the true ends. Under `fair`, the line with the published goals, all 20 kept, has the same estimator \
+    without the future frame, and only the best of its 20 hypotheses is chosen. The other lines under `fair` have the \
+    forecaster's own goals, and under `single` one representative goal. The conditions below the tables above name \
+    the training of each line.";
 
 /// The lines of forecasters with goals, by protocol, together with `published` on the same windows.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {

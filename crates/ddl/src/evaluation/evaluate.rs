@@ -1,7 +1,9 @@
 //! Evaluation of a model and the baselines on the windows of a test set.
 
 use crate::error::DdlError;
-use crate::evaluation::published::{Published, SAMPLES};
+use crate::evaluation::parts::{parts, pedestrians, scored};
+use crate::evaluation::published;
+use crate::evaluation::published::{OracleVariant, Published};
 use crate::evaluation::rows::{NamedForecasts, ResultRows};
 use crate::evaluation::straight_lines::{straight_lines, weighted};
 use crate::evaluation::variant::{EvaluationVariant, GivenGoals, VariantMotion, memory_words};
@@ -15,12 +17,12 @@ use crate::windows::test_set::TestSet;
 use ddl_core::{Forecast, ForecastError, Forecaster as _, WeightedGoals, WorkDone};
 use ddl_data::{Dataset, Position, Window};
 use ddl_eval::{Protocol, ResultRow};
-use ddl_goal::{GoalEstimator, GoalSet, QuerySpan};
+use ddl_goal::{GoalSet, QuerySpan};
+use ddl_network::Noise;
 use ddl_report::{ForecastSnapshot, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-const PEDESTRIANS_PER_REPORT: usize = 128;
 /// Protocols that show only the windows.
 const ALONE: [Protocol; 3] = [Protocol::Fair, Protocol::Single, Protocol::Joint];
 /// Protocols that also show the recording before the last observed frame of a window.
@@ -63,7 +65,7 @@ impl EvaluationRequest {
 /// Progress of an evaluation, for its observer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationProgress {
-    /// Pedestrians forecast so far, and in total.
+    /// Pedestrians forecast so far, and in total. Under `published`, the epochs that are compared count too.
     pub pedestrians: WorkDone,
     /// The current protocol.
     pub protocol: Protocol,
@@ -103,7 +105,7 @@ pub fn evaluate(
     let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
     let mut total = test.pedestrians() * passes.iter().filter(|asked| **asked).count();
     if let (true, Some(run)) = (asked(&[Protocol::Published]), model.run()) {
-        total += run.kept_epochs()?.len() * test.headline().map(Window::len).sum::<usize>();
+        total += published::compared_epochs(run)?.len() * test.headline().map(Window::len).sum::<usize>();
     }
     if asked(&WATCHING) {
         model.goal_model().recalled_per_pedestrian()?;
@@ -276,48 +278,61 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         )?)
     }
 
-    /// Besides the model, its rows with one help of the true future after the other taken away.
+    /// Evaluates the best epoch, then the last epoch, then also without the future frame, then also without noise.
     fn published(&mut self) -> Result<Vec<ResultRow>, DdlError> {
         let protocol = Protocol::Published;
         let (model, test) = (self.model, self.test);
         let estimator = |query| model.goal_model().published_estimator(query);
-        let (reading_on, observed) = (estimator(QuerySpan::PublishedFuture)?, estimator(QuerySpan::Observed)?);
-        let count = |windows: &[Window]| self.report(windows.iter().map(Window::len).sum(), protocol);
-        let [best, last] = Published::best_on_test_and_last(model, &reading_on, test.headline(), count)?;
-        let mut variants = vec![(&best, &reading_on, SAMPLES, None)];
-        variants.push((&last, &reading_on, SAMPLES, Some("of its last epoch")));
+        let reading_on = estimator(QuerySpan::PublishedFuture)?;
+        let windows: Vec<Window> = test.headline().cloned().collect();
+        let report = |pedestrians| self.report(pedestrians, protocol);
+        let [best, last] = Published::best_on_test_and_last(model, &reading_on, &windows, report)?;
+        let mut estimators = vec![reading_on];
+        let variant = |network, estimator, noise, change| OracleVariant {
+            network,
+            estimator,
+            noise,
+            change,
+        };
+        let mut variants = vec![
+            variant(&best, 0, best.samples(), None),
+            variant(&last, 0, last.samples(), Some("of its last epoch")),
+        ];
         if model.config().star.variant.uses_goal() {
+            estimators.push(estimator(QuerySpan::Observed)?);
             let change = "of its last epoch, without the future frame";
-            variants.push((&last, &observed, SAMPLES, Some(change)));
-            let change = "of its last epoch, without the future frame, one noise sample";
-            variants.push((&last, &observed, 1, Some(change)));
+            variants.push(variant(&last, 1, last.samples(), Some(change)));
+            let change = "of its last epoch, without the future frame and without noise";
+            variants.push(variant(&last, 1, Noise::Expected, Some(change)));
         }
         let forecasts = self.forecast(protocol, &test.windows, variants.len(), |windows| {
-            let goals = sets::nearest_true_end(&reading_on, windows)?;
+            let goals = estimators.iter().map(|one| sets::nearest_true_end(one, windows));
+            let goals = goals.collect::<Result<Vec<_>, _>>()?;
             let certain = |goals: &Vec<Position>| goals.iter().map(|&goal| WeightedGoals::certain(goal)).collect();
-            let lines = straight_lines(windows, goals.iter().map(certain).collect())?;
-            let of_variant = |&(network, estimator, samples, _): &(&Published, &GoalEstimator, usize, _)| {
-                network.forecast_towards(windows, &sets::nearest_true_end(estimator, windows)?, samples)
+            let lines = straight_lines(windows, goals[0].iter().map(certain).collect())?;
+            let of_variant = |variant: &OracleVariant<'_>| {
+                let goals = &goals[variant.estimator];
+                variant.network.forecast_towards(windows, goals, variant.noise)
             };
             let model = variants.iter().map(of_variant).collect::<Result<_, _>>()?;
             Ok(Forecasts { model, lines })
         })?;
-        let goals = model.goal_model().words();
-        let of_variant = |(&(.., change), forecasts): (&(_, _, _, Option<&str>), Vec<Forecast>)| {
-            let selection = change.map_or("best kept epoch on the TEST pedestrians", |_| words::selection(None));
-            NamedForecasts::model(&model.name(), forecasts, change, goals.clone(), selection)
-        };
-        let mut named: Vec<_> = variants.iter().zip(forecasts.model).map(of_variant).collect();
+        let (name, goals) = (model.name(), model.goal_model().words());
+        let named = variants.iter().zip(forecasts.model);
+        let mut named: Vec<_> = named
+            .map(|(OracleVariant { change, .. }, forecasts)| {
+                let chosen = "best kept epoch on the TEST windows of the headline rule";
+                let selection = change.map_or(chosen, |_| words::selection(None));
+                NamedForecasts::model(&name, forecasts, *change, goals.clone(), selection)
+            })
+            .collect();
+        let goal = "the estimated goal nearest the TRUE end";
         let recipe = "goals of the published estimator".to_owned();
-        named.push(NamedForecasts::lines_to(
-            "the estimated goal nearest the TRUE end",
-            recipe,
-            forecasts.lines,
-        ));
+        named.push(NamedForecasts::lines_to(goal, recipe, forecasts.lines));
         self.rows(protocol).of(&named)
     }
 
-    /// Forecasts all windows in several variants, in chunks. The model sees the futures only if the protocol shows
+    /// Forecasts all windows in several variants, in parts. The model sees the futures only if the protocol shows
     /// them.
     fn forecast(
         &mut self,
@@ -330,28 +345,13 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             model: vec![Vec::new(); variants],
             lines: Vec::new(),
         };
-        let mut done = 0;
-        while done < windows.len() {
-            let rest = &windows[done..];
-            let mut pedestrians = 0;
-            let count = rest
-                .iter()
-                .position(|window| {
-                    pedestrians += window.len();
-                    pedestrians >= PEDESTRIANS_PER_REPORT
-                })
-                .map_or(rest.len(), |last| last + 1);
-            let some = forecast_some(&protocol.visible(&rest[..count]))?;
-            let scored = |some: Vec<Forecast>| {
-                let pairs = some.into_iter().zip(rest);
-                pairs.map(|(forecast, window)| forecast.without_bystanders(window))
-            };
+        for part in parts(windows) {
+            let some = forecast_some(&protocol.visible(part))?;
             for (forecasts, some) in forecasts.model.iter_mut().zip(some.model) {
-                forecasts.extend(scored(some));
+                forecasts.extend(scored(part, some));
             }
-            forecasts.lines.extend(scored(some.lines));
-            done += count;
-            self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
+            forecasts.lines.extend(scored(part, some.lines));
+            self.report(pedestrians(part), protocol)?;
         }
         Ok(forecasts)
     }

@@ -1,22 +1,33 @@
 //! The model under the published protocol. It is kept separate because it uses the true future.
 
 use crate::error::DdlError;
+use crate::evaluation::parts::{parts, pedestrians, scored};
 use crate::forecast::certified::Walked;
 use crate::forecast::name;
 use crate::forecast::shaped;
 use crate::forecast::walk::PathIntegrator;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
+use crate::run::directory::RunDirectory;
 use ddl_core::{Forecast, ForecastError};
 use ddl_data::{Position, Window};
 use ddl_eval::Scores;
 use ddl_goal::GoalEstimator;
 use ddl_network::{ForecastWindows, NetworkFrame, Noise};
+use std::path::PathBuf;
 
-/// Windows that the choice of an epoch forecasts between two reports.
-const WINDOWS_AT_ONCE: usize = 32;
 /// Noise samples for the goal of a pedestrian.
-pub(crate) const SAMPLES: usize = 20;
+const SAMPLES: usize = 20;
+
+/// A network, its goals and its noise. The goal of each pedestrian is the one nearest the TRUE end.
+pub(crate) struct OracleVariant<'a> {
+    pub(crate) network: &'a Published,
+    /// Index of the estimator of its goals.
+    pub(crate) estimator: usize,
+    pub(crate) noise: Noise,
+    /// The difference from the published protocol.
+    pub(crate) change: Option<&'static str>,
+}
 
 /// The model as the published code evaluates it: noise samples to the estimated goal nearest the TRUE endpoint, with
 /// plain Euler steps.
@@ -27,13 +38,13 @@ pub(crate) struct Published {
 }
 
 impl Published {
-    /// The saved epoch that is best on the given TEST windows, which the published code chooses and a fair evaluation
-    /// must not; and the last one.
-    pub(crate) fn best_on_test_and_last<'a>(
+    /// Returns the kept epoch that is best on these TEST windows, and the last one. The published code chooses the
+    /// former; a fair evaluation must not. `report` receives the number of pedestrians after each part.
+    pub(crate) fn best_on_test_and_last(
         model: &Ddl,
         estimator: &GoalEstimator,
-        windows: impl Iterator<Item = &'a Window>,
-        mut done: impl FnMut(&[Window]) -> Result<(), DdlError>,
+        windows: &[Window],
+        mut report: impl FnMut(usize) -> Result<(), DdlError>,
     ) -> Result<[Self; 2], DdlError> {
         let Some(run) = model.run() else {
             return Err(model.source().wrong(
@@ -42,64 +53,56 @@ impl Published {
             ));
         };
         let config = model.config();
-        // The result is labelled "best kept epoch", so there must be several to choose from.
-        if config.training.epochs > 1 && config.keep_every >= config.training.epochs {
-            return Err(DdlError::run(
-                run.path(),
-                "keeps the weights of its last epoch only, but `published` chooses among several; train it again \
-                 without --last-epoch-only",
-            ));
-        }
-        if config.patience.is_some() {
-            return Err(DdlError::run(
-                run.path(),
-                "keeps the weights of its best epoch only, chosen on its validation part, but `published` chooses \
-                 among several; train it again with --patience 0",
-            ));
-        }
-        let windows: Vec<Window> = windows.cloned().collect();
-        let goals = sets::nearest_true_end(estimator, &windows)?;
-        let of_epoch = |epoch| {
-            let network = model.network_of_epoch(run, epoch)?;
+        let with = |weights: PathBuf| {
+            let network = model.network_with(&weights)?;
             let seed = config.training.seed;
             Ok::<_, DdlError>(Self { network, seed })
         };
-        let epochs = run.kept_epochs()?;
-        let Some(&last) = epochs.last() else {
-            return Err(DdlError::run(run.path(), "has no saved epochs; train it again"));
-        };
-        let mut best = (f64::INFINITY, last);
-        for epoch in epochs {
-            let network = of_epoch(epoch)?;
-            let mut forecasts = Vec::new();
-            for (windows, goals) in windows.chunks(WINDOWS_AT_ONCE).zip(goals.chunks(WINDOWS_AT_ONCE)) {
-                forecasts.extend(network.forecast_towards(windows, goals, SAMPLES)?);
-                done(windows)?;
+        let mut goals = Vec::new();
+        let mut best = (f64::INFINITY, run.model());
+        for epoch in compared_epochs(run)? {
+            let candidate = with(run.epoch(epoch))?;
+            let mut sum = 0.0;
+            for (index, part) in parts(windows).enumerate() {
+                if index == goals.len() {
+                    goals.push(sets::nearest_true_end(estimator, part)?);
+                }
+                let forecasts = candidate.forecast_towards(part, &goals[index], candidate.samples())?;
+                let forecasts: Vec<Forecast> = scored(part, forecasts).collect();
+                sum += Scores::evaluate(part, &forecasts)?.min_ade * pedestrians(part) as f64;
+                report(pedestrians(part))?;
             }
-            let error = Scores::evaluate(&windows, &forecasts)?.min_ade;
-            if error < best.0 {
-                best = (error, epoch);
+            if sum < best.0 {
+                best = (sum, run.epoch(epoch));
             }
         }
-        Ok([of_epoch(best.1)?, of_epoch(last)?])
+        Ok([with(best.1)?, with(run.model())?])
     }
 
-    /// Makes noise samples for the single goal of every pedestrian. The steps are plain Euler steps. A network that
-    /// was trained with bounded steps keeps them, because its output is dimensionless.
+    /// The noise of the published protocol.
+    pub(crate) fn samples(&self) -> Noise {
+        Noise::Draws {
+            count: SAMPLES,
+            seed: self.seed,
+        }
+    }
+
+    /// Forecasts with this noise for the single goal of every pedestrian. The steps are plain Euler steps. A network
+    /// that was trained with bounded steps keeps them, because its output is dimensionless.
     pub(crate) fn forecast_towards(
         &self,
         windows: &[Window],
         goals: &[Vec<Position>],
-        samples: usize,
+        noise: Noise,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let config = self.network.config();
         let single: Vec<Vec<Vec<Position>>> = goals
             .iter()
             .map(|goals| goals.iter().map(|&goal| vec![goal]).collect())
             .collect();
-        let noise = Noise::Draws {
-            count: samples,
-            seed: self.seed,
+        let samples = match noise {
+            Noise::Expected => 1,
+            Noise::Draws { count, .. } => count,
         };
         let integrator = match config.frame {
             NetworkFrame::World => PathIntegrator::PlainEuler,
@@ -131,5 +134,18 @@ impl Published {
                 walked.forecast()
             })
             .collect()
+    }
+}
+
+/// The epochs of a run to choose from; none if it was trained for one only.
+pub(crate) fn compared_epochs(run: &RunDirectory) -> Result<Vec<usize>, DdlError> {
+    let epochs = run.kept_epochs()?;
+    match (epochs.len(), run.config()?.training.epochs) {
+        (_, 1) => Ok(Vec::new()),
+        (0 | 1, _) => Err(DdlError::run(
+            run.path(),
+            "keeps the weights of no epochs that `published` could choose from; train it again, with --patience 0",
+        )),
+        _ => Ok(epochs),
     }
 }

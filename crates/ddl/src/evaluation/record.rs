@@ -35,8 +35,8 @@ struct MeasuredRecording {
 }
 
 /// 1: with the row of the packed model. 2: the central goal is drawn towards the extrapolated last step. 3: the
-/// single forecast is straight. 4: motion is bounded. 5: the row of the packed model is called so. 6: `published`
-/// without each of its helps, and its epoch chosen on all windows.
+/// single forecast is straight. 4: motion is bounded. 5: the row of the packed model is called so. 6: further
+/// rows of `published`, whose epoch is chosen on all headline windows.
 const ROWS: u32 = 6;
 
 impl EvaluationRecord {

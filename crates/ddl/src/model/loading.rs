@@ -92,13 +92,9 @@ impl Ddl {
         Self::with(GoalModel::of_run(run, config, device)?, device, network)
     }
 
-    /// The network with the weights that the run saved after `epoch`.
-    pub(crate) fn network_of_epoch(
-        &self,
-        run: &RunDirectory,
-        epoch: usize,
-    ) -> Result<Box<dyn ForecastWindows>, DdlError> {
-        load_network(self.config(), self.device, &run.epoch(epoch))
+    /// The network with the weights of another epoch of its run.
+    pub(crate) fn network_with(&self, weights: &Path) -> Result<Box<dyn ForecastWindows>, DdlError> {
+        load_network(self.config(), self.device, weights)
     }
 
     /// Writes a forecast-only copy of the model into one small file, which [`Ddl::load`] reads. It holds the weights of

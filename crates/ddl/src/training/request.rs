@@ -31,8 +31,6 @@ pub struct TrainingRequest {
     pub patience: Option<usize>,
     /// The units of own recordings, for the record; `None` if not given.
     pub units: Option<TrackUnits>,
-    /// The epochs whose weights are kept, without [`patience`](Self::patience).
-    pub kept_epochs: KeptEpochs,
     /// The last stage to train; a later call can continue.
     pub until: TrainingStage,
     /// The run's directory.
@@ -58,22 +56,12 @@ impl TrainingRequest {
             from: None,
             patience: None,
             units: None,
-            kept_epochs: KeptEpochs::Several,
             until: TrainingStage::Network,
             out,
             device: DeviceChoice::Cpu,
             commit: "unknown".to_owned(),
         }
     }
-}
-
-/// The epochs whose weights a run keeps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum KeptEpochs {
-    /// About 20 epochs, from which the protocol `published` chooses.
-    Several,
-    /// The last epoch.
-    Last,
 }
 
 /// The stages of a training, in order.

@@ -12,7 +12,7 @@ use crate::run::training_data::{digest, digest_of_recording, fold_by_name, learn
 use crate::training::best_epoch::best_epoch;
 use crate::training::early_stopping::{EarlyStopping, better_goals};
 use crate::training::goals::{self, GoalStage};
-use crate::training::request::{KeptEpochs, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
+use crate::training::request::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
 use crate::training::starting_weights::StartingWeights;
 use crate::trust::fingerprints::{TrackFingerprints, tracks_of};
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
@@ -150,11 +150,10 @@ fn config_of(
                 _ => BTreeMap::new(),
             },
         },
-        keep_every: match (request.patience, request.kept_epochs) {
+        keep_every: match request.patience {
             // any of them may be the best
-            (Some(_), _) => 1,
-            (None, KeptEpochs::Last) => request.training.epochs,
-            (None, KeptEpochs::Several) => request.training.epochs.div_ceil(KEPT_EPOCHS),
+            Some(_) => 1,
+            None => request.training.epochs.div_ceil(KEPT_EPOCHS),
         },
         patience: request.patience,
         from: began_with,

@@ -91,11 +91,6 @@ impl ProgramArguments {
     fn path(self, name: &str, path: &Path) -> Self {
         self.option(name, Some(path.display()))
     }
-
-    fn flag(mut self, name: &str, given: bool) -> Self {
-        self.0.extend(given.then(|| name.to_owned()));
-        self
-    }
 }
 
 impl Plan {
@@ -163,12 +158,7 @@ impl Plan {
                 optimiser.map(|optimiser| optimiser.schedule),
             )
             .path("--out", &task.run_folder(out));
-        // Only `published` chooses an epoch, with the true future.
-        let last_alone = !settings.protocols.contains(&Protocol::Published);
-        self.on_machine(words, threads)
-            .option("--progress", Some("json"))
-            .flag("--last-epoch-only", last_alone)
-            .0
+        self.on_machine(words, threads).option("--progress", Some("json")).0
     }
 
     pub(super) fn evaluate_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {

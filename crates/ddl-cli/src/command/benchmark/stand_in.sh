@@ -7,7 +7,7 @@ while [ $# -gt 0 ]; do
   case "$1" in
     --out|--model) run=$2;;
     --fold) fold=$2;;
-    --json|--last-epoch-only) shift; continue;;
+    --json) shift; continue;;
   esac
   shift 2
 done

@@ -1,0 +1,29 @@
+//! Test windows in parts, between which an evaluation reports and can stop.
+
+use ddl_core::Forecast;
+use ddl_data::Window;
+
+const PEDESTRIANS: usize = 128;
+
+/// Consecutive windows of at least 128 pedestrians in all, except the last part.
+pub(crate) fn parts(windows: &[Window]) -> impl Iterator<Item = &[Window]> {
+    let mut pedestrians = 0;
+    windows.chunk_by(move |window, _| {
+        pedestrians += window.len();
+        let whole = pedestrians >= PEDESTRIANS;
+        if whole {
+            pedestrians = 0;
+        }
+        !whole
+    })
+}
+
+pub(crate) fn pedestrians(windows: &[Window]) -> usize {
+    windows.iter().map(Window::len).sum()
+}
+
+/// The forecasts of the pedestrians that are scored.
+pub(crate) fn scored(windows: &[Window], forecasts: Vec<Forecast>) -> impl Iterator<Item = Forecast> {
+    let pairs = forecasts.into_iter().zip(windows);
+    pairs.map(|(forecast, window)| forecast.without_bystanders(window))
+}
