@@ -113,9 +113,9 @@ fn check_oracle(rows: &[&ResultRow]) {
     };
     let of_last = "DDL of its last epoch";
     assert!(of("DDL").min_ade < of(of_last).min_ade);
-    let without_frame = format!("{of_last}, without the future frame");
+    let without_frame = format!("{of_last} without the future frame");
     assert_ne!(of(&without_frame).goal_fde, of(of_last).goal_fde);
-    let without_noise = of(&format!("{without_frame} and without noise"));
+    let without_noise = of(&format!("{without_frame} and noise"));
     assert_eq!(without_noise.goal_fde, of(&without_frame).goal_fde);
     assert_eq!((without_noise.hypotheses, of(&without_frame).hypotheses), (1, 20));
 }

@@ -300,9 +300,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         ];
         if model.config().star.variant.uses_goal() {
             estimators.push(estimator(QuerySpan::Observed)?);
-            let change = "of its last epoch, without the future frame";
+            let change = "of its last epoch without the future frame";
             variants.push(variant(&last, 1, last.samples(), Some(change)));
-            let change = "of its last epoch, without the future frame and without noise";
+            let change = "of its last epoch without the future frame and noise";
             variants.push(variant(&last, 1, Noise::Expected, Some(change)));
         }
         let forecasts = self.forecast(protocol, &test.windows, variants.len(), |windows| {
