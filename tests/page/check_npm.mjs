@@ -119,6 +119,9 @@ test("a memory grows, times are seconds, and a faulty frame changes nothing", ()
   assert.throws(() => forecast("a.csv", Buffer.from("frame,pedestrian,x,y\n0,1,left,2\n")), /a\.csv, line 2, field 3/);
   assert.throws(() => forecast("a.csv", Buffer.from("\x89MCAP0\r\n", "latin1")), /a\.csv: an MCAP file/);
   assert.throws(() => forecast("a.csv", bytes.toString()), /the bytes of the file are no Uint8Array/);
+  const row = (_, i) => `${Math.floor(i / 1000)},${i % 1000},${0.4 * Math.floor(i / 1000)},${i % 1000}`;
+  const many = ["frame,pedestrian,x,y", ...Array.from({ length: 42_000 }, row)].join("\n");
+  assert.throws(() => forecast("a.csv", Buffer.from(many), { fps: 2.5 }), /41000 forecasts exceed the 40000/);
   assert.throws(() => forecast({}, bytes), /the name of the file is no string/);
   for (const moment of [NaN, 5e9]) {
     assert.throws(() => place.observe(moment, Float64Array.of(7), Float64Array.of(0, 0)), /a number of seconds/);

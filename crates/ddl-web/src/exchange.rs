@@ -1,5 +1,6 @@
 //! Values that pass between Rust and JavaScript, as JSON.
 
+use js_sys::{Array, Object};
 use serde::de::DeserializeOwned;
 use serde_json::{Map, Value};
 use std::error::Error;
@@ -36,12 +37,11 @@ pub(crate) fn thrown(failure: &dyn Error) -> JsError {
     JsError::new(&ddl::with_causes(failure))
 }
 
-/// `Answer` of `types.d.ts`, of JSON lines.
+/// `Answer` of `types.d.ts`, of JSON lines. All of them may exceed the longest string of JavaScript.
 pub(crate) fn answer(notes: &[String], lines: &str, is_due: bool) -> Result<JsValue, Failure> {
     let notes = serde_json::to_string(notes)?;
-    let forecasts: Vec<&str> = lines.lines().collect();
-    parse(&format!(
-        "{{\"due\":{is_due},\"notes\":{notes},\"forecasts\":[{}]}}",
-        forecasts.join(",")
-    ))
+    let answer: Object = parse(&format!("{{\"due\":{is_due},\"notes\":{notes}}}"))?.unchecked_into();
+    let forecasts = lines.lines().map(parse).collect::<Result<Array, _>>()?;
+    js_sys::Reflect::set(&answer, &"forecasts".into(), &forecasts).map_err(|_| "an answer is no object")?;
+    Ok(answer.into())
 }

@@ -11,6 +11,9 @@ use ddl::{
 };
 use std::path::Path;
 
+/// Largest number of forecasts at once: as objects of JavaScript they take 4 GB.
+const MOST: usize = 40_000;
+
 pub(crate) struct Tracks {
     pub(crate) observed: ObservedTracks,
     /// Notes and warnings, a line each, as the program prints them.
@@ -98,6 +101,11 @@ impl Tracks {
 
 /// The forecasts of windows in order of time; with regions they adapt from one to the next.
 pub(crate) fn forecasts(windows: &[Window], options: &Options) -> Result<Vec<Forecast>, Failure> {
+    let count: usize = windows.iter().map(Window::len).sum();
+    if count > MOST {
+        let problem = format!("{count} forecasts exceed the {MOST} that memory holds: take fewer (every, last)");
+        return Err(problem.into());
+    }
     let model = model()?;
     if options.joint {
         return Ok(model.forecast_scenes(windows, None)?);
