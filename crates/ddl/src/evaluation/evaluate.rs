@@ -295,13 +295,13 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             change,
         };
         let mut variants = vec![
-            variant(&best, 0, best.samples(), None),
-            variant(&last, 0, last.samples(), Some("of its last epoch")),
+            variant(&best, 0, best.samples, None),
+            variant(&last, 0, last.samples, Some("of its last epoch")),
         ];
         if model.config().star.variant.uses_goal() {
             estimators.push(estimator(QuerySpan::Observed)?);
             let change = "of its last epoch without the future frame";
-            variants.push(variant(&last, 1, last.samples(), Some(change)));
+            variants.push(variant(&last, 1, last.samples, Some(change)));
             let change = "of its last epoch without the future frame and noise";
             variants.push(variant(&last, 1, Noise::Expected, Some(change)));
         }

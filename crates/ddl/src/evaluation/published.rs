@@ -34,7 +34,8 @@ pub(crate) struct OracleVariant<'a> {
 #[derive(Debug)]
 pub(crate) struct Published {
     network: Box<dyn ForecastWindows>,
-    seed: u64,
+    /// The noise of the published protocol.
+    pub(crate) samples: Noise,
 }
 
 impl Published {
@@ -52,11 +53,13 @@ impl Published {
              `single`",
             ));
         };
-        let config = model.config();
+        let samples = Noise::Draws {
+            count: SAMPLES,
+            seed: model.config().training.seed,
+        };
         let with = |weights: PathBuf| {
             let network = model.network_with(&weights)?;
-            let seed = config.training.seed;
-            Ok::<_, DdlError>(Self { network, seed })
+            Ok::<_, DdlError>(Self { network, samples })
         };
         let mut goals = Vec::new();
         let mut best = (f64::INFINITY, run.model());
@@ -67,7 +70,7 @@ impl Published {
                 if index == goals.len() {
                     goals.push(sets::nearest_true_end(estimator, part)?);
                 }
-                let forecasts = candidate.forecast_towards(part, &goals[index], candidate.samples())?;
+                let forecasts = candidate.forecast_towards(part, &goals[index], candidate.samples)?;
                 let forecasts: Vec<Forecast> = scored(part, forecasts).collect();
                 sum += Scores::evaluate(part, &forecasts)?.min_ade * pedestrians(part) as f64;
                 report(pedestrians(part))?;
@@ -77,14 +80,6 @@ impl Published {
             }
         }
         Ok([with(best.1)?, with(run.model())?])
-    }
-
-    /// The noise of the published protocol.
-    pub(crate) fn samples(&self) -> Noise {
-        Noise::Draws {
-            count: SAMPLES,
-            seed: self.seed,
-        }
     }
 
     /// Forecasts with this noise for the single goal of every pedestrian. The steps are plain Euler steps. A network

@@ -439,8 +439,7 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
 
 /// The clock if no option gives it, and the reason if it is assumed; `None` if it needs another frame.
 ///
-/// `apart`: difference
-/// of the first two frame numbers of a scene.
+/// `apart`: difference of the first two frame numbers of a scene.
 fn clock_of(units: &Units, apart: Option<i64>, stated: &StatedTime) -> anyhow::Result<Option<(Clock, Option<String>)>> {
     if let Some(unit) = stated.time_unit {
         return Ok(Some((Clock::with_stamps(unit), None)));
