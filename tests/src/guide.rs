@@ -24,6 +24,7 @@ pub const LONG: &[(&str, &str)] = &[
     ("docs/program.md", "ddl goals --model runs/eth --measure"),
     ("docs/program.md", "ddl train --fold eth --only-goals"),
     ("docs/program.md", "ddl train --fold zara1"),
+    ("docs/published.md", "ddl"),
     ("docs/training.md", "ddl train --data recordings --out runs/own"),
     ("docs/tried.md", "ddl"),
 ];
