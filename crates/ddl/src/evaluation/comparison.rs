@@ -1,16 +1,15 @@
 //! A run beside another model on the validation part of the run.
 
 use crate::error::DdlError;
+use crate::evaluation::parts::{parts, pedestrians};
 use crate::model::ddl::Ddl;
 use crate::windows::test_set::TestSet;
 use ddl_core::WorkDone;
-use ddl_data::{Dataset, Window};
+use ddl_data::Dataset;
 use ddl_eval::Protocol;
 use ddl_eval::significance::{BlockErrors, PairedDifference, block_errors, paired_difference};
 use serde::Serialize;
 use std::ops::ControlFlow;
-
-const WINDOWS_AT_ONCE: usize = 64;
 
 /// Errors of the best of 20 hypotheses in metres, means over pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -67,7 +66,7 @@ pub fn compare_on_validation(
     };
     let mut measured = |model: &Ddl| -> Result<Vec<BlockErrors>, DdlError> {
         let mut forecasts = Vec::new();
-        for some in windows.chunks(WINDOWS_AT_ONCE) {
+        for some in parts(&windows) {
             forecasts.extend(Protocol::Fair.forecast(model, some)?);
             progress.done += some.len() as u64;
             if observe(progress).is_break() {
@@ -78,7 +77,7 @@ pub fn compare_on_validation(
     };
     let (of_run, of_other) = (measured(run)?, measured(other)?);
     Ok(Comparison {
-        pedestrians: windows.iter().map(Window::len).sum(),
+        pedestrians: pedestrians(&windows),
         run: BestOf20Errors::of(&of_run),
         other: BestOf20Errors::of(&of_other),
         other_knows_them: dataset.recordings().iter().any(|recording| {

@@ -2,8 +2,7 @@
 
 use crate::error::DdlError;
 use crate::evaluation::parts::{parts, pedestrians, scored};
-use crate::evaluation::published;
-use crate::evaluation::published::{OracleVariant, Published};
+use crate::evaluation::published::{self, OracleVariant, Published};
 use crate::evaluation::rows::{NamedForecasts, ResultRows};
 use crate::evaluation::straight_lines::{straight_lines, weighted};
 use crate::evaluation::variant::{EvaluationVariant, GivenGoals, VariantMotion, memory_words};

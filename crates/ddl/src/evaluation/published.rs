@@ -95,10 +95,6 @@ impl Published {
             .iter()
             .map(|goals| goals.iter().map(|&goal| vec![goal]).collect())
             .collect();
-        let samples = match noise {
-            Noise::Expected => 1,
-            Noise::Draws { count, .. } => count,
-        };
         let integrator = match config.frame {
             NetworkFrame::World => PathIntegrator::PlainEuler,
             NetworkFrame::Goal => PathIntegrator::Stable,
@@ -113,6 +109,7 @@ impl Published {
                 if !config.variant.uses_goal() {
                     return shaped::with_equal_weights(rollout);
                 }
+                let samples = rollout.hypotheses;
                 let walked = Walked {
                     spread: None,
                     shares: vec![1.0; window.len()],
@@ -120,7 +117,7 @@ impl Published {
                     config,
                     integrator,
                     window,
-                    hypotheses: rollout.hypotheses,
+                    hypotheses: samples,
                     rolled_out: rollout.positions,
                     factors: rollout.factors,
                     weights: vec![1.0 / samples as f64; goals.len() * samples],
