@@ -2,7 +2,7 @@
 
 use ddl::data::{Convention, Window, WindowRule};
 use ddl::network::{EpochReport, NetworkFrame, Objective, StarConfig, TrainingConfig};
-use ddl::{GoalEvaluation, RunConfig, RunDirectory, Variant};
+use ddl::{GoalEvaluation, GoalRecipe, RunConfig, RunDirectory, Variant};
 use ddl_tests::place::{Place, json, json_lines};
 use ddl_tests::progress::{reported, returns_at_once};
 use ddl_tests::{crowd, drawn_model, folder_contents, trained_model};
@@ -75,17 +75,16 @@ fn goals_are_measured_before_the_network_is_trained() {
 /// The configuration of a new run; its network is not trained.
 fn started_with(options: &str) -> RunConfig {
     let place = Place::empty();
-    let train = "train --convention simulated --fold corridor --only-goals --proposal-steps 1 --threads 1 \
-                 --out run";
+    let train = "train --convention simulated --fold corridor --only-goals --threads 1 --out run";
     let _ = place.ok(&format!("{train} {options}"));
     RunDirectory::new(place.at("run")).config().unwrap()
 }
 
 #[test]
 fn the_recommended_recipe_is_the_default() {
-    let full = started_with("");
+    let full = started_with("--proposal-steps 1");
     for variant in Variant::ALL {
-        let config = started_with(&format!("--recipe recommended --variant {variant}"));
+        let config = started_with(&format!("--proposal-steps 1 --recipe recommended --variant {variant}"));
         assert_eq!(config.star, StarConfig::recommended(variant));
         assert_eq!(config.training, TrainingConfig::recommended(variant));
         assert!(variant != Variant::Full || config == full);
@@ -108,6 +107,11 @@ fn the_published_recipe_is_the_papers() {
     assert_eq!(star, (NetworkFrame::World, 2048));
     let training = (config.training.epochs, config.training.batch_pedestrians);
     assert_eq!((config.training.objective, training), (Objective::NextStep, (200, 256)));
+    assert_eq!(
+        config.goals,
+        GoalRecipe::retrieved(1),
+        "the paper has no network of goals"
+    );
 }
 
 #[test]

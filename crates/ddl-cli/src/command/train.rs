@@ -97,9 +97,10 @@ pub(crate) struct Train {
     /// [default: 0; for own recordings 10]
     #[arg(long, value_name = "EPOCHS")]
     patience: Option<usize>,
-    /// Source of goals: proposed by a network that is trained first, or retrieved from the training tracks
-    #[arg(long, value_enum, default_value_t = GoalsFrom::Proposed)]
-    goals: GoalsFrom,
+    /// Source of goals: proposed by a network that is trained first, or retrieved from the training tracks [default:
+    /// proposed, published retrieved unless --proposal-steps is given]
+    #[arg(long, value_enum)]
+    goals: Option<GoalsFrom>,
     #[arg(long, help = format!(
         "Batches that the proposal network is trained on [default: {}, with --from 300]",
         ProposalTraining::default().steps
@@ -236,7 +237,7 @@ impl Train {
             && self.feed_forward_width.is_none()
             && self.spatial_layers.is_none()
             && self.backbone.is_none()
-            && self.goals == GoalsFrom::Proposed
+            && self.goals != Some(GoalsFrom::Retrieved)
             && self.goal_recipe.is_none();
         if !usual {
             tell(format_args!(
@@ -336,11 +337,13 @@ impl Train {
             return serde_json::from_value(recipe).with_context(wrong);
         }
         match (self.goals, self.proposal_steps) {
-            (GoalsFrom::Retrieved, Some(_)) => {
+            (Some(GoalsFrom::Retrieved), Some(_)) => {
                 bail!("--proposal-steps needs --goals proposed: retrieved goals have no network")
             }
-            (GoalsFrom::Retrieved, None) => Ok(GoalRecipe::retrieved(self.seed)),
-            (GoalsFrom::Proposed, steps) => {
+            (Some(GoalsFrom::Retrieved), None) => Ok(GoalRecipe::retrieved(self.seed)),
+            // The paper has no network of goals.
+            (None, None) if self.recipe == Recipe::Published => Ok(GoalRecipe::retrieved(self.seed)),
+            (_, steps) => {
                 let mut recipe = if further {
                     ddl::fine_tuning_goal_recipe(self.seed)
                 } else {

@@ -58,8 +58,8 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         ),
         (
             &format!("{published} smoke"),
-            "star-smoke-published 2 150: --epochs 1 --train-pedestrians 600 --proposal-steps 40 --recipe published \
-             --batch-pedestrians 256 --learning-rate 0.0015 --learning-rate-schedule constant",
+            "star-smoke-published 2 150: --epochs 1 --train-pedestrians 600 --recipe published --batch-pedestrians 256 \
+             --learning-rate 0.0015 --learning-rate-schedule constant",
         ),
         (
             &format!("{published} quick"),
