@@ -148,7 +148,6 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
         let network = TorchProposals::new(config.clone(), 3, device()).unwrap();
         let mut training = training(60);
         training.memory.steps = steps;
-        // Without mirroring: each side of the fork is learned from an earlier pedestrian on that side.
         let mut trainer = ProposalTrainer::new(network, &examples, &[], training).unwrap();
         while !trainer.is_finished() {
             trainer.step().unwrap();

@@ -12,7 +12,7 @@ use crate::training::prepared::{PreparedBatches, TrainingBatch};
 use crate::training::recorded::RecordedSteps;
 use crate::training::schedule::Schedule;
 use ddl_core::WorkDone;
-use ddl_data::{Position, Window};
+use ddl_data::{OBSERVED, Position, Window};
 use ddl_network::backend::Kernels;
 use ddl_network::weights::{Origin, Weights};
 use ddl_network::{EpochReport, NetworkError, StepReport, TrainingConfig};
@@ -25,6 +25,8 @@ use tch::Tensor;
 /// Least mean number of pedestrians in the parts of a batch. On the CPU, several threads compute the parts, and their
 /// gradients are added. Smaller parts take more processor time.
 const PART: usize = 128;
+/// The origin of a window is a multiple of this, metres.
+const ORIGINS: f64 = 1024.0;
 
 /// A network in training. A run that was stopped, saved and resumed gives the same weights as an uninterrupted run.
 #[derive(Debug)]
@@ -64,6 +66,16 @@ impl Trainer {
             goals.retain(|_| of_windows.next().is_some_and(Window::has_future));
         }
         windows.retain(Window::has_future);
+        // In single precision, coordinates of maps are rounded to half a metre. Origins are rounded so that those of
+        // other recordings are 0.
+        for (w, window) in windows.iter_mut().enumerate() {
+            let origin = window.observed(0)[OBSERVED - 1].map(|x| ORIGINS * (x / ORIGINS).round());
+            let relative = |position: Position| [0, 1].map(|axis| position[axis] - origin[axis]);
+            *window = window.map_positions(|_, _, position| relative(position));
+            for goal in goals.iter_mut().flat_map(|goals| &mut goals[w]) {
+                *goal = relative(*goal);
+            }
+        }
         config.check(network.layers.config.variant)?;
         let schedule = Schedule::new(&windows, &config);
         if schedule.batches.is_empty() {

@@ -110,6 +110,33 @@ fn the_number_of_threads_changes_nothing() {
     }
 }
 
+/// In single precision, such coordinates are rounded to half a metre.
+#[test]
+fn in_coordinates_of_maps_the_gradient_is_the_same() {
+    let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
+    let gradient = |by: Position| {
+        let star = StarConfig {
+            feed_forward_width: 32,
+            ..StarConfig::published(Variant::Full)
+        };
+        let network = TorchNetwork::with_precision(star, 5, cpu, Kind::Float).unwrap();
+        let moved = |place: Position| [place[0] + by[0], place[1] + by[1]];
+        let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
+        let windows: Vec<Window> = windows
+            .iter()
+            .map(|window| window.map_positions(|_, _, at| moved(at)))
+            .collect();
+        let end = |window: &Window| (0..window.len()).map(|i| window.future(i)[11]).collect();
+        let goals = windows.iter().map(end).collect();
+        let mut trainer = Trainer::new(network, windows, Some(goals), TrainingConfig::published()).unwrap();
+        let draw = StepDraw::new(0, &trainer.schedule, &trainer.config, &trainer.network).unwrap();
+        trainer.gradient(0, &draw).unwrap().1.to_kind(Kind::Double)
+    };
+    let (near, far) = (gradient([0.0; 2]), gradient([691_608.0, 5_334_763.0]));
+    let apart = ((&near - far).norm() / near.norm()).double_value(&[]);
+    assert!(apart < 1e-3, "{apart}");
+}
+
 #[test]
 fn a_loss_that_is_not_finite_stops_the_run_and_names_the_batch() {
     let star = StarConfig::published(Variant::Full);
