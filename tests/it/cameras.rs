@@ -140,6 +140,9 @@ fn a_failure_of_one_scene_is_its_own() {
     // A frame that cannot be observed is also an error.
     let error = scenes.observe(Some(&name("a")), 3, []).unwrap_err();
     assert!(matches!(error, DdlError::Live(_)), "{error}");
+    let nowhere = [(PedestrianId(1), [f64::NAN, 0.0])];
+    assert!(scenes.observe(Some(&name("d")), 0, nowhere).is_err());
+    assert!(scenes.tracks(Some(&name("d"))).is_none(), "nothing has changed");
     let seen = [(PedestrianId(1), [0.0, 0.0])];
     for scene in ["a", "c"] {
         scenes.observe(Some(&name(scene)), 8, seen).unwrap();

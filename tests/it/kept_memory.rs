@@ -3,7 +3,7 @@
 use crate::live::Live;
 use ddl::data::LiveTracks;
 use ddl::memory::SceneMemory;
-use ddl::{Ddl, DeviceChoice, LiveForecaster, Variant};
+use ddl::{Ddl, DeviceChoice, LiveForecaster, LiveScenes, MemoryFile, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{crowd, drawn_model};
@@ -111,6 +111,26 @@ fn a_memory_of_another_place_stays_as_it_is() {
     assert!(!finished.stderr.contains("place"), "{finished:?}");
     finished.succeeds();
     assert!(place.read("hall.memory") != before);
+}
+
+#[test]
+fn a_tracker_that_restarts_elsewhere_does_not_free_the_file() {
+    let place = Place::with_model();
+    remember(&place, "hall.memory", &rows(0..300), FRAME_STEP);
+    let before = place.read("hall.memory");
+    let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
+    let (mut file, memory) = MemoryFile::open(&place.at("hall.memory")).unwrap();
+    let mut scenes = LiveScenes::new(LiveTracks::with_frame_step(FRAME_STEP).unwrap()).latest_only();
+    scenes.remember(None, &model, memory).unwrap();
+    for steps in [200, 50] {
+        scenes.clear(None);
+        for (frame, seen) in own_tracks::frames(&moved(rows(0..steps))) {
+            scenes.observe(None, frame, seen).unwrap();
+        }
+    }
+    let reason = file.end(scenes.place(None).unwrap().clone()).unwrap();
+    assert!(reason.unwrap().contains("the memory is of another place"));
+    assert!(place.read("hall.memory") == before);
 }
 
 #[test]

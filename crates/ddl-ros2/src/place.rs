@@ -7,6 +7,7 @@ use anyhow::ensure;
 use ddl::data::{Clock, Completeness, LiveTracks, Numbering, PedestrianNames, TimeUnit, Window};
 use ddl::{
     AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, LiveScenes, MemoryFile, ModelSource,
+    PlaceMemory,
 };
 use ddl_ros::Observed;
 use ddl_ros::msg::Header;
@@ -77,12 +78,13 @@ impl Place {
                 "time goes back from {last} s to {time} s, and all tracks begin anew; is there a second tracker?"
             ));
             self.regions.clear();
-            if let Some(place) = self.scenes.forget(None) {
-                self.scenes.remember(None, &self.model, Some(place.memory().clone()))?;
-            }
+            self.scenes.clear(None);
         }
         let (seen, newer) = observed.numbered(&mut self.numbering);
         self.scenes.observe(None, time, seen)?;
+        if let Some(why) = self.scenes.place(None).and_then(PlaceMemory::refused) {
+            health.warn(&format!("{why}; its file stays as it is"));
+        }
         self.last = Some(time);
         self.names = self.names.updated(&newer, |_| true);
         let tracks = self.scenes.tracks(None);

@@ -139,18 +139,22 @@ impl LiveScenes {
     }
 
     /// Adds a frame as read by a [`FrameReader`](ddl_data::FrameReader); its pedestrians keep their names. If the scene
-    /// [begins again](Frame::is_first), its tracks are forgotten first, but the memory of its place is kept.
+    /// [begins again](Frame::is_first), it is [cleared](Self::clear) first.
     ///
     /// # Errors
-    /// As [`observe`](Self::observe).
+    /// As [`observe`](Self::observe); a scene that begins again stays cleared.
     pub fn observe_frame(&mut self, frame: Frame) -> Result<(), DdlError> {
-        if frame.is_first
-            && frame.scene.is_some()
-            && let Some(scene) = self.scenes.get_mut(&frame.scene)
-        {
-            scene.watch.clear();
+        if frame.is_first && frame.scene.is_some() {
+            self.clear(frame.scene.as_ref());
         }
         self.add(frame.scene, frame.number, frame.pedestrians, &frame.names)
+    }
+
+    /// Forgets the tracks of a scene, as when its tracker restarts; the memory of its place is kept.
+    pub fn clear(&mut self, scene: Option<&SceneName>) {
+        if let Some(scene) = self.scenes.get_mut(&scene.cloned()) {
+            scene.watch.clear();
+        }
     }
 
     fn add(
@@ -172,8 +176,17 @@ impl LiveScenes {
             }
             .into());
         }
+        let is_new = !self.scenes.contains_key(&name);
         let scene = self.scene(&name)?;
-        let made = scene.watch.push(frame, pedestrians, |_| Ok::<_, DdlError>(()))?;
+        let made = match scene.watch.push(frame, pedestrians, |_| Ok::<_, DdlError>(())) {
+            Ok(made) => made,
+            Err(error) => {
+                if is_new {
+                    self.scenes.remove(&name);
+                }
+                return Err(error);
+            }
+        };
         scene.heard = Instant::now();
         let is_moment = scene.watch.tracks.is_moment();
         scene.watch.tracks.name(names);
