@@ -5,6 +5,8 @@ use std::path::PathBuf;
 use ddl_core::{PedestrianId, Position};
 use thiserror::Error;
 
+use crate::observation::COORDINATE_LIMIT;
+
 /// A file of tracks cannot be read: the file, the line, the field and the problem.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{origin}, line {line}{}: {problem}", .field.map(|f| format!(", field {f}")).unwrap_or_default())]
@@ -30,8 +32,11 @@ pub enum RecordingError {
     FrameStep { found: i64 },
     #[error("pedestrian {pedestrian}: frame {frame} is not below 2^53 in size")]
     FrameOutOfRange { pedestrian: PedestrianId, frame: i64 },
-    #[error("pedestrian {pedestrian}, frame {frame}: position {position:?} is not finite")]
-    NotFinite {
+    #[error(
+        "pedestrian {pedestrian}, frame {frame}: {position:?} is no position; x and y are finite, and within \
+         {COORDINATE_LIMIT} m of the origin"
+    )]
+    NoPosition {
         pedestrian: PedestrianId,
         frame: i64,
         position: Position,

@@ -4,18 +4,18 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
-use ddl_core::{PedestrianId, PedestrianNames, is_finite, is_frame, is_frame_step};
+use ddl_core::{PedestrianId, PedestrianNames, is_frame, is_frame_step};
 
 use crate::clock::{Clock, ClockError, TimeUnit};
 use crate::error::RecordingError;
-use crate::observation::Observation;
+use crate::observation::{COORDINATE_LIMIT, Observation};
 
 /// Spacing of the rows of a pedestrian (s) above which they no longer show the course of a track.
 const SLOWEST: f64 = 1.2;
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
-/// Invariants: at least one observation, every position finite, at most one observation per pedestrian and frame, a
+/// Invariants: at least one observation, every position finite and within [`COORDINATE_LIMIT`], at most one observation per pedestrian and frame, a
 /// positive frame step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
@@ -61,8 +61,9 @@ impl Recording {
             if !is_frame(frame) {
                 return Err(RecordingError::FrameOutOfRange { pedestrian, frame });
             }
-            if !is_finite(position) {
-                return Err(RecordingError::NotFinite {
+            // False for NaN.
+            if !position.iter().all(|coordinate| coordinate.abs() <= COORDINATE_LIMIT) {
+                return Err(RecordingError::NoPosition {
                     pedestrian,
                     frame,
                     position,

@@ -68,7 +68,7 @@ fn invalid_clocks_and_extreme_frames_are_refused() {
 }
 
 fn pedestrian(frames: impl Iterator<Item = i64>) -> Recording {
-    let seen = frames.map(|frame| Observation::new(frame, PedestrianId(1), [0.05 * frame as f64, 0.0]));
+    let seen = frames.map(|frame| Observation::new(frame, PedestrianId(1), [0.05 * frame as f64 % 1e6, 0.0]));
     Recording::in_usual_step("film", seen.collect()).unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! Tracks fed frame by frame: refused frames, and forgotten pedestrians.
 
-use ddl_data::{ClockError, LiveError, LiveTracks, PedestrianId};
+use ddl_data::{ClockError, LiveError, LiveTracks, Observation, PedestrianId, Recording, RecordingError};
 
 #[test]
 fn errors_change_nothing() {
@@ -28,6 +28,8 @@ fn errors_change_nothing() {
             assert_eq!(tracks, before);
         }
     }
+    let recording = Recording::in_usual_step("far", vec![Observation::new(0, pedestrian, position)]);
+    assert!(matches!(recording, Err(RecordingError::NoPosition { .. })));
     for step in [0, -1, (1 << 31) + 1] {
         let error = LiveTracks::with_frame_step(step);
         assert_eq!(error, Err(ClockError::FrameStep { found: step }));
