@@ -67,7 +67,8 @@ typedef struct ddl_request {
   bool joint;
   // With `joint`: a plan that the pedestrians respond to; all zero without one.
   struct ddl_plan plan;
-  // The id of the pedestrian who follows that plan; null if it is somebody else, such as a robot.
+  // The id of the pedestrian who follows that plan; null if it is somebody else, such as a robot. In a live frame
+  // without this pedestrian it is somebody else too.
   const int64_t *ego;
 } ddl_request;
 

@@ -203,14 +203,7 @@ impl Answer {
         let area = area.map_err(Failure::invalid)?;
         let times = Occupancy::every(cells.every).map_err(Failure::invalid)?;
         let [width, height] = area.size();
-        if width * height * times.len() > Area::MOST_CELLS {
-            return Err(Failure::invalid(format!(
-                "{} grids of {width} x {height} cells have more than {} numbers; ask for larger cells, a smaller area \
-                 or fewer times",
-                times.len(),
-                Area::MOST_CELLS
-            )));
-        }
+        area.ensure_kept(times.len()).map_err(Failure::invalid)?;
         threads.run(|| {
             let grids = futures
                 .occupancy(&area, &times, cells.radius)

@@ -96,6 +96,13 @@ pub unsafe extern "C" fn ddl_model_forecast(
         let tracks = tracks.map(|track| track.iter().map(|position| [position.x, position.y]).collect());
         let ids = (0..count as i64).map(PedestrianId).collect();
         let window = Window::new("past", 0, 1, ids, tracks.collect()).map_err(Failure::invalid)?;
+        if let Request::Joint(Some(GivenPlan { ego: Some(ego), .. })) = &request
+            && window.named(ego).is_none()
+        {
+            return Err(Failure::invalid(format!(
+                "ego is {ego}, but no such pedestrian is given"
+            )));
+        }
         forecast
             .0
             .hold(Some(model.forecast(window, &request)?), &Notes::default());
@@ -234,6 +241,9 @@ unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, Failure> {
         return Ok(Request::Hypotheses);
     };
     let is_planned = !request.plan.points.is_null() || request.plan.count > 0;
+    if request.ego.is_some() && !is_planned {
+        return Err(Failure::invalid("ego follows a plan: give the plan, or leave out ego"));
+    }
     if !request.joint {
         let words = "only joint futures respond to a plan: set joint, or leave out the plan";
         return if is_planned {

@@ -99,7 +99,8 @@ pub struct ddl_request<'a> {
     pub joint: bool,
     /// With `joint`: a plan that the pedestrians respond to; all zero without one.
     pub plan: ddl_plan,
-    /// The id of the pedestrian who follows that plan; null if it is somebody else, such as a robot.
+    /// The id of the pedestrian who follows that plan; null if it is somebody else, such as a robot. In a live frame
+    /// without this pedestrian it is somebody else too.
     pub ego: Option<&'a i64>,
 }
 

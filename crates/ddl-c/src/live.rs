@@ -11,6 +11,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Whole numbers below it are exact.
 const LARGEST: f64 = (1_u64 << 53) as f64;
+/// After a moment in an error.
+const OF_TIMES: &str = " s (frames are microseconds)";
 
 #[derive(Debug)]
 pub(crate) struct Live {
@@ -58,11 +60,7 @@ impl Live {
             let right = "it must be a number of seconds below 9e9, or with `rate` a frame number below 2^53";
             return Err(Failure::invalid(format!("the moment is {at}; {right}")));
         }
-        let unit = if self.has_times {
-            " s (frames are microseconds)"
-        } else {
-            ""
-        };
+        let unit = if self.has_times { OF_TIMES } else { "" };
         let failed = |error: DdlError| Failure::invalid(format!("at {at}{unit}: {error}"));
         let mut place = self.held();
         let place = &mut *place;
@@ -130,12 +128,7 @@ fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, Failure> {
         0.0 => Clock::with_stamps(TimeUnit::Seconds),
         rate => Clock::with_frame_time(rate.recip()).map_err(Failure::invalid)?,
     };
-    let completeness = if whole {
-        Completeness::Whole
-    } else {
-        Completeness::Partial
-    };
-    let tracks = LiveTracks::with_clock(clock).with_completeness(completeness);
+    let tracks = LiveTracks::with_clock(clock).with_completeness(Completeness::of(whole));
     Ok(tracks.with_max_age(max_age.copied()).with_interval(every))
 }
 

@@ -136,6 +136,9 @@ void wrong_input_is_told(const ddl::Model& model) {
     ddl::Request alone = ddl::joint({{0.0, {0.0, 0.0}, 0.3}});
     alone.joint = false;
     REQUIRE(has(error_of([&] { ddl::forecast(model, meeting(), forecast, alone); }), "set joint"));
+    const ddl::Plan standing = {{0.0, {0.0, 0.0}, 0.3}};
+    for (const auto& [plan, words] : {std::pair{standing, "ego is 77"}, {ddl::Plan{}, "ego follows a plan"}})
+        REQUIRE(has(error_of([&] { ddl::forecast(model, meeting(), forecast, ddl::joint(plan, 77)); }), words));
     ddl::LiveOptions options;
     options.max_age = 3.0;
     REQUIRE(has(error_of([&] { ddl::Live(model, options); }), "max_age is 3"));

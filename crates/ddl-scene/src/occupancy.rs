@@ -66,6 +66,16 @@ impl Area {
         })
     }
 
+    /// Whether the grids of so many times can be kept together: 200 million numbers take 0.8 GB.
+    ///
+    /// # Errors
+    /// They have more numbers.
+    pub fn ensure_kept(&self, times: usize) -> Result<(), SceneError> {
+        let numbers = (times * self.width * self.height) as f64;
+        let right = "at most 200000000: take larger cells, a smaller area or fewer times";
+        check("the number of values in all grids", numbers, numbers <= 2e8, right)
+    }
+
     /// Its corner with the lowest x and y, metres.
     pub fn origin(&self) -> Position {
         self.origin

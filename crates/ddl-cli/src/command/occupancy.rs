@@ -56,9 +56,6 @@ fn corners(text: &str) -> Result<[f64; 4], String> {
     corners.ok_or_else(|| "an area is four numbers, such as -5,-5,5,5: lowest x and y, largest x and y (metres)".into())
 }
 
-/// The most numbers of the grids of one moment; an array of numpy of so many takes 0.8 GB.
-const MOST_NUMBERS: usize = 200_000_000;
-
 /// Metres around the paths in an area of their own.
 const MARGIN: f64 = 1.0;
 
@@ -142,14 +139,7 @@ impl Answer for OccupancyCommand {
         for moment in moments {
             let futures = Futures::new(moment.window, moment.forecast.clone())?;
             let area = self.area_of(&futures)?;
-            let [width, height] = area.size();
-            if times.len() * width * height > MOST_NUMBERS {
-                bail!(
-                    "{} grids of {width} x {height} cells are too many at once: take larger cells (--cell), a smaller \
-                     area (--area) or fewer times (--every)",
-                    times.len()
-                );
-            }
+            area.ensure_kept(times.len())?;
             let grids = futures.occupancy(&area, &times, self.radius)?;
             let moment_number = moment.observed_until().rounded();
             if self.folder.is_some() {
