@@ -112,7 +112,7 @@ test("a memory grows, times are seconds, and a faulty frame changes nothing", ()
     assert.equal(forecasts.length, step === 0 ? 0 : 1);
   }
   assert.ok(place.remembered() > 0);
-  assert.throws(() => place.observe(1, Float64Array.of(7), Float64Array.of(0, 0)), /order|after|last/);
+  assert.throws(() => place.observe(1, Float64Array.of(7), Float64Array.of(0, 0)), /^at 1 s \(frames are microseconds\): frame 1000000 comes after/);
   assert.throws(() => place.observe(30, Float64Array.of(7), Float64Array.of(0)), /two for each id/);
   assert.throws(() => place.observe(30, Float64Array.of(7.5), Float64Array.of(0, 0)), /whole number/);
   assert.equal(place.observe(24, Float64Array.of(7), Float64Array.of(30, 1)).forecasts.length, 1);

@@ -4,8 +4,6 @@ use ddl_data::{Dataset, TIME_STEP, Window, WindowRule};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 use std::sync::OnceLock;
 
-/// Seed of the crowds, equal to that of the program, so that both use the same pedestrians.
-const SEED: u64 = 1;
 /// The scene left out of training.
 pub const FOLD: &str = "corridor";
 /// Tracks of the expert library: enough for 100 different experts, few enough for a fast search.
@@ -14,7 +12,7 @@ const EXPERTS: usize = 600;
 /// The five simulated scenes.
 pub fn dataset() -> &'static Dataset {
     static DATASET: OnceLock<Dataset> = OnceLock::new();
-    DATASET.get_or_init(|| Dataset::simulated(SEED))
+    DATASET.get_or_init(|| Dataset::simulated(Dataset::CROWDS))
 }
 
 /// Test windows with their futures, of 2 to `most` pedestrians, spread over the whole recording.

@@ -27,9 +27,6 @@ use ddl::report::Report;
 use ddl::{BuiltinModel, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, RunConfig};
 use std::path::{Path, PathBuf};
 
-/// Seed of the simulated crowds, the same for all users.
-const SIMULATION_SEED: u64 = 1;
-
 /// A model by name, or the default built-in model.
 #[derive(Debug, Args)]
 pub(crate) struct ModelChoice {
@@ -193,7 +190,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
                 data.display()
             );
         }
-        return Ok(Dataset::simulated(SIMULATION_SEED));
+        return Ok(Dataset::simulated(Dataset::CROWDS));
     }
     Ok(Dataset::load(convention, &folder(convention, data)?)?)
 }

@@ -55,12 +55,7 @@ impl TrackOptions {
 
     /// These tracks with the options' windows.
     pub(crate) fn windows_of(&self, tracks: LiveTracks) -> LiveTracks {
-        let completeness = if self.whole {
-            Completeness::Whole
-        } else {
-            Completeness::Partial
-        };
-        let tracks = tracks.with_completeness(completeness);
+        let tracks = tracks.with_completeness(Completeness::of(self.whole));
         tracks.with_max_age(self.max_age).with_interval(self.every)
     }
 

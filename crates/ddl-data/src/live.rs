@@ -28,6 +28,14 @@ pub enum Completeness {
     Partial,
 }
 
+impl Completeness {
+    /// Only those tracked for all 8 steps, or all.
+    #[must_use]
+    pub fn of(only_whole: bool) -> Self {
+        if only_whole { Self::Whole } else { Self::Partial }
+    }
+}
+
 /// The tracks of all pedestrians up to the last frame.
 ///
 /// After every frame, [`window`](Self::window) holds what was observed up to then, and nothing later: for each

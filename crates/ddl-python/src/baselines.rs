@@ -2,8 +2,8 @@
 
 use crate::errors::of_any;
 use crate::forecasts::{EmptyFields, PlainOrCertified, parts};
-use crate::observed::{Observed, completeness};
-use ddl::data::Window;
+use crate::observed::Observed;
+use ddl::data::{Completeness, Window};
 use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine};
 use ddl::{Forecaster, WeightedGoals};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
@@ -22,7 +22,7 @@ pub(crate) fn baseline<'py>(
     seed: u64,
     goals: Option<PyReadonlyArray3<'py, f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scene = Observed::new(&past, asked, completeness(false))?;
+    let scene = Observed::new(&past, asked, Completeness::Partial)?;
     let forecaster: Box<dyn Forecaster + Send + Sync> = match name {
         "constant_velocity" => Box::new(ConstantVelocity::LastStep),
         "mean_velocity" => Box::new(ConstantVelocity::MeanObserved),

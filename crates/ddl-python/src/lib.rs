@@ -34,31 +34,21 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _core {
     #[pymodule_export]
-    use crate::baselines::baseline;
-    #[pymodule_export]
-    use crate::dynamics::Flow;
-    #[pymodule_export]
-    use crate::evaluation::{TestSet, conventions, evaluate_model, report, windows};
-    #[pymodule_export]
-    use crate::forecasts::{region_radii, write_forecasts};
-    #[pymodule_export]
-    use crate::goals::GoalEstimator;
-    #[pymodule_export]
-    use crate::interruptible::set_num_threads;
-    #[pymodule_export]
-    use crate::live::Live;
-    #[pymodule_export]
-    use crate::metrics::{collisions, displacement_errors, kde_nll, mahalanobis, scores, spread_between};
-    #[pymodule_export]
-    use crate::model::Model;
-    #[pymodule_export]
-    use crate::program::main;
-    #[pymodule_export]
-    use crate::recording::Recording;
-    #[pymodule_export]
-    use crate::scene::{clearances, occupancy, risks};
-    #[pymodule_export]
-    use crate::soft_dtw::{SearchIndex, value, value_and_gradient};
+    use crate::{
+        baselines::baseline,
+        dynamics::Flow,
+        evaluation::{TestSet, conventions, evaluate_model, report, windows},
+        forecasts::{region_radii, write_forecasts},
+        goals::GoalEstimator,
+        interruptible::set_num_threads,
+        live::Live,
+        metrics::{collisions, displacement_errors, kde_nll, mahalanobis, scores, spread_between},
+        model::Model,
+        program::main,
+        recording::Recording,
+        scene::{check_plans, clearances, occupancy, risks},
+        soft_dtw::{SearchIndex, value, value_and_gradient},
+    };
 
     use pyo3::prelude::*;
 

@@ -4,10 +4,10 @@ use crate::arrays::{array, numbers};
 use crate::errors::{of_any, raised};
 use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
 use crate::interruptible::{Stop, run};
-use crate::observed::{Observed, WindowOptions, completeness, past_tracks};
+use crate::observed::{Observed, WindowOptions, past_tracks};
 use crate::recording::{ObservedWindows, Recording};
 use crate::scene::plan;
-use ddl::data::{PedestrianId, Window};
+use ddl::data::{Completeness, PedestrianId, Window};
 use ddl::{Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource, RecordingPlayer};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
@@ -146,7 +146,7 @@ impl Model {
             let (plan, ego) = (plan(&rows)?, ego.map(|row| PedestrianId(row).into()));
             options.given = Some(GivenPlan { plan, ego });
         }
-        let completeness = completeness(whole);
+        let completeness = Completeness::of(whole);
         let pasts = past.iter().map(past_tracks).collect::<PyResult<Vec<_>>>()?;
         let scenes = run(py, move |_| {
             let scenes = pasts.par_iter().zip(asked);
@@ -188,11 +188,9 @@ impl Model {
         joint: bool,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
         let options = ForecastOptions::new(&self.0, samples, certificates, joint)?;
-        let observed = WindowOptions::new(whole, max_age, every)?;
-        let ObservedWindows { mut windows, doubt } = recording.observed(py, observed)?;
-        if last {
-            windows.drain(..windows.len().saturating_sub(1));
-        }
+        let mut observed = WindowOptions::new(whole, max_age, every)?;
+        observed.last = last;
+        let ObservedWindows { windows, doubt } = recording.observed(py, observed)?;
         let forecasts = self.forecasts(py, options, windows.clone())?;
         let pairs = windows.iter().zip(&forecasts);
         let forecasts = pairs.map(|(window, forecast)| named_parts(py, window, forecast, recording.moments));
@@ -201,7 +199,7 @@ impl Model {
 
     /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
     fn goals(&self, py: Python<'_>, past: PyReadonlyArray3<'_, f64>, asked: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let scene = Observed::new(&past, asked, completeness(false))?;
+        let scene = Observed::new(&past, asked, Completeness::Partial)?;
         let k = self.hypotheses();
         let mut goals = vec![[f64::NAN; 2]; asked * k];
         let mut weights = vec![f64::NAN; asked * k];

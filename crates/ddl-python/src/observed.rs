@@ -7,15 +7,6 @@ use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Which pedestrians are observed well enough to be forecast.
-pub(crate) fn completeness(whole: bool) -> Completeness {
-    if whole {
-        Completeness::Whole
-    } else {
-        Completeness::Partial
-    }
-}
-
 /// The windows that the user asks for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WindowOptions {
@@ -24,6 +15,8 @@ pub(crate) struct WindowOptions {
     max_age: Option<f64>,
     /// `None` for the interval that suits the recording.
     pub(crate) every: Option<f64>,
+    /// Only the window of the last moment.
+    pub(crate) last: bool,
 }
 
 impl WindowOptions {
@@ -38,17 +31,19 @@ impl WindowOptions {
                 )));
             }
         }
-        let completeness = completeness(whole);
         Ok(Self {
-            completeness,
+            completeness: Completeness::of(whole),
             max_age,
             every,
+            last: false,
         })
     }
 
     pub(crate) fn of(self, tracks: LiveTracks) -> LiveTracks {
         let tracks = tracks.with_completeness(self.completeness);
-        tracks.with_max_age(self.max_age).with_interval(self.every)
+        // With clocks of their own, too, the last row is the last moment.
+        let every = self.every.or(self.last.then_some(0.0));
+        tracks.with_max_age(self.max_age).with_interval(every)
     }
 }
 

@@ -94,7 +94,16 @@ impl Recording {
     }
 
     fn observe(&self, options: WindowOptions) -> ObservedWindows {
-        let observed = self.tracks.observe(options.of(self.tracks.live_tracks()));
+        let (mut windows, mut forecast) = (Vec::new(), BTreeSet::new());
+        let observed = self
+            .tracks
+            .observe_each(options.of(self.tracks.live_tracks()), |window| {
+                forecast.extend(window.pedestrians().iter().copied());
+                if options.last {
+                    windows.clear();
+                }
+                windows.push(window);
+            });
         let names = self.tracks.names();
         let misfits = Misfit::words(&observed.misfits, |misfit| {
             format!(
@@ -103,20 +112,19 @@ impl Recording {
                 self.moments.words(misfit.tick)
             )
         });
-        let missing = self.words_of_missing(options, &observed.windows);
+        let missing = self.words_of_missing(options, &forecast);
         let doubts: Vec<String> = misfits.into_iter().chain(missing).collect();
         ObservedWindows {
-            windows: observed.windows,
+            windows,
             doubt: (!doubts.is_empty()).then(|| doubts.join("; ")),
         }
     }
 
     /// Text about pedestrians who are in no window, though they have rows enough.
-    fn words_of_missing(&self, options: WindowOptions, windows: &[Window]) -> Option<String> {
+    fn words_of_missing(&self, options: WindowOptions, found: &BTreeSet<PedestrianId>) -> Option<String> {
         if options.completeness == Completeness::Whole || options.every.is_some() {
             return None;
         }
-        let found: BTreeSet<PedestrianId> = windows.iter().flat_map(Window::pedestrians).copied().collect();
         let mut rows: Vec<PedestrianId> = self.tracks.observations().iter().map(|row| row.pedestrian).collect();
         rows.sort_unstable();
         let known = rows.chunk_by(|a, b| a == b);
@@ -198,7 +206,9 @@ impl Recording {
         choice: (Option<String>, Option<String>, Option<String>),
     ) -> PyResult<Self> {
         let (fps, frame_step) = rate;
-        let choice = choice_of(choice, homography.is_some()).map_err(PyValueError::new_err)?;
+        let (columns, keep, unit) = &choice;
+        let given = [columns, keep, unit].map(Option::as_deref);
+        let choice = ColumnChoice::given(given, homography.is_some()).map_err(PyValueError::new_err)?;
         let bytes = std::fs::read(&path).map_err(|source| {
             let path = path.clone();
             raised(ddl::DdlError::Io { path, source })
@@ -298,26 +308,6 @@ impl Recording {
         let warning = self.tracks.speed_warning()?;
         Some(ddl::in_frames(self.moments.clock, warning).to_string())
     }
-}
-
-/// Columns, rows and unit that the caller gives.
-fn choice_of(
-    (columns, keep, unit): (Option<String>, Option<String>, Option<String>),
-    is_mapped: bool,
-) -> Result<ColumnChoice, String> {
-    let mut choice = ColumnChoice::default();
-    if let Some(columns) = columns {
-        choice = choice
-            .with_columns(&columns)
-            .map_err(|problem| format!("columns {problem}"))?;
-    }
-    if let Some(keep) = keep {
-        choice = choice.keeping(&keep).map_err(|problem| format!("keep {problem}"))?;
-    }
-    if let Some(unit) = unit {
-        choice = choice.in_unit(&unit).map_err(|problem| format!("unit {problem}"))?;
-    }
-    Ok(if is_mapped { choice.mapped() } else { choice })
 }
 
 pub(crate) fn format_named(name: &str) -> PyResult<Format> {

@@ -52,6 +52,12 @@ fn futures((past, paths, weights, spread): &JointArrays<'_>) -> PyResult<Futures
     Futures::new(&window, forecast).map_err(of_any)
 }
 
+/// Whether these are plans, where there is nobody.
+#[pyfunction]
+pub(crate) fn check_plans(plans: Vec<PyReadonlyArray2<'_, f64>>) -> PyResult<()> {
+    plans.iter().try_for_each(|rows| plan(rows).map(drop))
+}
+
 /// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step
 /// and until its end `(p, 12)`.
 #[pyfunction]
@@ -114,18 +120,24 @@ pub(crate) fn occupancy<'py>(
     area: Option<[f64; 4]>,
 ) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2])> {
     let (cell, every, radius, margin) = options;
-    let futures = futures(&joint)?;
-    let area = match area {
-        Some([x0, y0, x1, y1]) => Area::new([x0, y0], [x1, y1], cell),
-        None => futures.area(margin, cell),
+    let futures = (joint.0.shape()[0] > 0).then(|| futures(&joint)).transpose()?;
+    let area = match (area, &futures) {
+        (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
+        (None, Some(futures)) => futures.area(margin, cell),
+        (None, None) => return Err(PyValueError::new_err("nobody can be forecast: give the area")),
     };
     let area = area.map_err(of_any)?;
     let times = Occupancy::every(every).map_err(of_any)?;
+    area.ensure_kept(times.len()).map_err(of_any)?;
     let [width, height] = area.size();
     let grids = run(py, {
         let times = times.clone();
-        move |_| {
+        move |stop| {
+            let Some(futures) = futures else {
+                return Ok(vec![0.0; times.len() * width * height]);
+            };
             let grids = futures.occupancy(&area, &times, radius)?;
+            let grids = grids.take_while(|_| !stop.is_asked());
             Ok(grids.flat_map(|grid| grid.probabilities).collect::<Vec<f32>>())
         }
     })?;

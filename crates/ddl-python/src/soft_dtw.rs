@@ -41,12 +41,17 @@ macro_rules! in_dimension {
 
 /// A sequence: an array `(steps, components)`, or `(steps,)` of single numbers. Contiguous float64 is not copied.
 fn sequence<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArray2<'py, f64>> {
+    let numpy = object.py().import("numpy")?;
+    if object.hasattr("mask")? && numpy.getattr("ma")?.call_method1("is_masked", (object,))?.is_truthy()? {
+        return Err(PyValueError::new_err(format!(
+            "{name} has masked values: leave out these steps"
+        )));
+    }
     if let Ok(array) = object.cast::<PyArray2<f64>>()
         && array.is_c_contiguous()
     {
         return Ok(array.readonly());
     }
-    let numpy = object.py().import("numpy")?;
     let array = numpy.call_method1("ascontiguousarray", (object, "float64"))?;
     let array = match array.getattr("ndim")?.extract::<usize>()? {
         1 => array.call_method1("reshape", (-1, 1))?,

@@ -114,6 +114,10 @@ def test_pedestrians_with_clocks_of_their_own(forecaster):
     # On time, or at the first row after it.
     assert (np.abs(np.diff(moments) - 0.4) < 0.06).all() and len(moments) > 15
     assert all(len(forecast) == PEDESTRIANS for forecast in made[1:])
+    with pytest.raises(ValueError, match="between two frames"):
+        ddl.write_forecasts("unused.jsonl", forecaster.forecast_recording(ddl.Recording(*film(7), fps=7)))
+    rows = ddl.Recording(time=time, id=one, x=x, y=y)
+    assert forecaster.forecast_recording(rows, last=True)[0].frame == time.max()
     last = made[-1]
     assert (last.age < 0.15).all() and (last.age > 0).any() and last.frames[0] == pytest.approx(last.frame + 0.4)
     for i, one in enumerate(last.ids):

@@ -55,6 +55,9 @@ def test_windows_of_a_fold_and_of_a_recording(tracks):
     assert windows[0].past.shape[1:] == (8, 2) and windows[0].future.shape[1:] == (12, 2)
     training = ddl.windows("simulated", fold="plaza", part="training")
     assert {window.recording for window in training}.isdisjoint({window.recording for window in windows})
+    # As many as `ddl data --convention simulated` counts: the crowds are the same.
+    doorway = ddl.windows("simulated", fold="doorway", rule="complete")
+    assert sum(len(window.ids) for window in doorway) == 2832
     own = ddl.windows(ddl.read(tracks))
     assert own and own[0].recording == "plaza" and len(own[0].ids) == len(own[0].past)
 
@@ -74,6 +77,8 @@ def test_all_forms_of_predictions_and_wrong_ones():
         (lambda past: constant_velocity(past)[:, :, :5], "window 0"),
         (lambda past: np.full((len(past), 12, 2), np.nan), "window 0"),
         (lambda past: np.repeat(constant_velocity(past), 21, axis=1), "20"),
+        (lambda past: np.ma.masked_all((len(past), 12, 2)), "window 0 of doorway, fair: paths has masked values"),
+        (lambda past: (past, past, past), "window 0"),
     ]:
         with pytest.raises(ValueError, match=r".") as error:
             ddl.evaluate(wrong, convention="simulated", folds=["doorway"])
@@ -125,6 +130,8 @@ def test_wrong_arguments_are_refused_at_once_and_models_are_distinguished():
         ddl.evaluate({"plaza": model}, convention="simulated", folds=["plaza", "doorway"])
     with pytest.raises(ValueError, match="trained without star hotel"):
         ddl.evaluate({"eth": ddl.Forecaster("hotel")})
+    with pytest.raises(ValueError, match="leave out name"):
+        ddl.evaluate(ddl.Forecaster("hotel"), name="mine")
     with pytest.raises(ValueError, match="convention='star'"):
         ddl.evaluate(ddl.Forecaster("hotel"), convention="simulated")
     one = ddl.evaluate(constant_velocity, convention="simulated", folds=["plaza"], name="a")

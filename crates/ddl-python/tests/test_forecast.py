@@ -207,6 +207,11 @@ def test_words_of_absent_pedestrians_are_forgotten(forecaster, monkeypatch):
     for frame in range(60):
         forecast = live.observe(frame, ["stays", f"passes {frame}"], [[0.4 * frame, 0.0], [5.0, 5.0]])
     assert len(live._words) <= 20 and forecast.ids.tolist() == ["stays"]
+    # Nobody becomes a second pedestrian while it is carried on without a row.
+    for frame in range(60, 90):
+        here = ["stays"] if frame % 2 else []
+        forecast = live.observe(frame, [*here, f"passes {frame}"], [[0.4 * frame, 0.0]] * len(here) + [[5.0, 5.0]])
+        assert forecast.ids.tolist().count("stays") == 1 and all(isinstance(one, str) for one in forecast.ids)
 
 
 def test_calls_of_several_threads_take_turns(forecaster, crossing, tmp_path):
@@ -336,5 +341,15 @@ def test_joint_futures_and_their_answers(forecaster, crossing):
         forecaster.forecast(scene).futures  # noqa: B018
     with pytest.raises(ValueError, match="sort the rows"):
         forecast.risk([plan[::-1]])
+    with pytest.raises(ValueError, match="fewer times"):
+        forecast.occupancy(0.05, every=0.01, area=(-20, -20, 20, 20))
+    nobody = forecaster.forecast(np.full((2, 8, 2), np.nan), joint=True)
+    assert nobody.risk([plan]).total == 0 and np.isinf(nobody.nearest([plan])[0]).all()
+    assert not nobody.occupancy(0.5, area=(0, 0, 2, 1)).probabilities.any()
+    for ask in (nobody.risk, nobody.nearest):
+        with pytest.raises(ValueError, match="sort the rows"):
+            ask([plan[::-1]])
+    with pytest.raises(ValueError, match="give the area"):
+        nobody.occupancy()
     with pytest.raises(ValueError, match="is not among"):
         forecast.risk([plan], ego=77)

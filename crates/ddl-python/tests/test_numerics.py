@@ -41,6 +41,10 @@ def test_soft_dtw_takes_any_array():
     for same in (np.asfortranarray(x), x.tolist(), x.astype(np.float32), x.astype(int), np.repeat(x, 2, axis=0)[::2]):
         assert soft_dtw.value(same, y) == expected
     assert soft_dtw.value(x[:, 0], y[:, 0]) == soft_dtw.value(x[:, :1], y[:, :1])
+    with pytest.raises(ValueError, match="x has masked values"):
+        soft_dtw.value(np.ma.masked_greater(x, 0), y)
+    with pytest.raises(ValueError, match="P has masked values"):
+        dynamics.Flow((0, 0), np.ma.masked_equal(np.eye(2), 0))
     assert soft_dtw.value(x, x, normalised=True) == pytest.approx(0, abs=1e-12)
     for wrong in (np.empty((0, 2)), np.full((3, 2), np.nan), np.zeros((2, 3)), np.zeros((2, 2, 2)), "text"):
         with pytest.raises(ValueError, match=r"."):

@@ -11,6 +11,8 @@ use wasm_bindgen::prelude::*;
 
 /// Microseconds in a second: times are counted in them.
 const MICROSECONDS: f64 = 1e6;
+/// After a moment in an error.
+const OF_TIMES: &str = " s (frames are microseconds)";
 /// Options that `LiveOptions` of `types.d.ts` leaves out.
 const OF_FILES: [&str; 6] = ["homography", "columns", "keep", "unit", "last", "moments"];
 
@@ -94,10 +96,12 @@ impl Live {
             .zip(positions)
             .map(|(id, position)| (PedestrianId(*id as i64), *position));
         let now = if self.options.joint {
-            self.forecaster.push_joint(frame, seen, None)?
+            self.forecaster.push_joint(frame, seen, None)
         } else {
-            self.forecaster.push(frame, seen)?
+            self.forecaster.push(frame, seen)
         };
+        let unit = if self.are_times { OF_TIMES } else { "" };
+        let now = now.map_err(|error| format!("at {moment}{unit}: {error}"))?;
         let clock = self.clock;
         let misfits = Misfit::words(self.forecaster.tracks().misfits(), |misfit| {
             format!("pedestrian {} at {}", misfit.pedestrian.0, clock.number(misfit.tick))

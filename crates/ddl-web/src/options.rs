@@ -43,23 +43,8 @@ impl Options {
     }
 
     pub(crate) fn choice(&self) -> Result<ColumnChoice, Failure> {
-        let mut choice = ColumnChoice::default();
-        if let Some(columns) = &self.columns {
-            choice = choice
-                .with_columns(columns)
-                .map_err(|problem| format!("columns {problem}"))?;
-        }
-        if let Some(keep) = &self.keep {
-            choice = choice.keeping(keep).map_err(|problem| format!("keep {problem}"))?;
-        }
-        if let Some(unit) = &self.unit {
-            choice = choice.in_unit(unit).map_err(|problem| format!("unit {problem}"))?;
-        }
-        Ok(if self.homography.is_some() {
-            choice.mapped()
-        } else {
-            choice
-        })
+        let given = [&self.columns, &self.keep, &self.unit].map(Option::as_deref);
+        Ok(ColumnChoice::given(given, self.homography.is_some())?)
     }
 
     /// These tracks with the windows that are asked for.
@@ -70,13 +55,8 @@ impl Options {
                 return Err(format!("{name} must be a number of seconds from 0 to {longest}").into());
             }
         }
-        let completeness = if self.whole {
-            Completeness::Whole
-        } else {
-            Completeness::Partial
-        };
         let every = self.every.or(self.last.then_some(0.0));
-        let tracks = tracks.with_completeness(completeness);
+        let tracks = tracks.with_completeness(Completeness::of(self.whole));
         Ok(tracks.with_max_age(self.max_age).with_interval(every))
     }
 

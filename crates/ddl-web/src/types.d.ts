@@ -18,7 +18,7 @@ export interface Options {
   whole?: boolean;
   /** Carry pedestrians on until their last row is so old, seconds. */
   maxAge?: number;
-  /** Time between two forecasts, seconds. Default: every frame. */
+  /** Time between two forecasts, seconds. Default: every frame, or 0.4 s if each pedestrian has a clock of its own. */
   every?: number;
   /** Only the last moment. */
   last?: boolean;

@@ -21,6 +21,27 @@ pub struct ColumnChoice {
 }
 
 impl ColumnChoice {
+    /// What a user gives: [columns](Self::with_columns), [keep](Self::keeping) and [unit](Self::in_unit), and whether a
+    /// homography [maps](Self::mapped) the positions.
+    ///
+    /// # Errors
+    /// As those; the message begins with the name of the option.
+    pub fn given([columns, keep, unit]: [Option<&str>; 3], is_mapped: bool) -> Result<Self, String> {
+        let mut choice = Self::default();
+        if let Some(columns) = columns {
+            choice = choice
+                .with_columns(columns)
+                .map_err(|problem| format!("columns {problem}"))?;
+        }
+        if let Some(keep) = keep {
+            choice = choice.keeping(keep).map_err(|problem| format!("keep {problem}"))?;
+        }
+        if let Some(unit) = unit {
+            choice = choice.in_unit(unit).map_err(|problem| format!("unit {problem}"))?;
+        }
+        Ok(if is_mapped { choice.mapped() } else { choice })
+    }
+
     /// Names the columns that hold the frame (or time), pedestrian, x, y, the sides of a box, class or scene, such as
     /// `frame=frame_id,x=xCenter`. Columns that are not named keep the meaning of their names.
     ///

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Floats, floats
+from ddl_forecast._arrays import Floats, floats, unmasked
 from ddl_forecast._forecast import Forecast
 from ddl_forecast._forecaster import Forecaster
 from ddl_forecast._recording import Recording
@@ -229,8 +229,8 @@ def evaluate(
     for fold in asked:
         of_fold = model[fold] if isinstance(model, Mapping) else model
         if isinstance(of_fold, Forecaster):
-            if rule is not None:
-                raise ValueError("a Forecaster is evaluated under the window rules of its convention: leave out rule")
+            if rule is not None or name != "my model":
+                raise ValueError("a Forecaster has a name and window rules of its own: leave out name and rule")
             rows += _of_forecaster(of_fold, protocols, data, progress)
             continue
         tests = _core.TestSet(convention, data, fold, rule)
@@ -275,15 +275,16 @@ def _prediction(
             raise ValueError(f"{title}: some pedestrians were not forecast")
         paths, weights, goals = made.paths, made.weights, made.goals
     else:
-        paths, weights = made if isinstance(made, tuple) else (made, None)
-    array = np.array(paths, dtype=np.float64)
-    if array.ndim == 3:
-        array = array[:, None]
+        paths, weights = made if isinstance(made, tuple) and len(made) == 2 else (made, None)
     try:
+        unmasked(paths, "paths")
+        array = np.array(paths, dtype=np.float64)
+        if array.ndim == 3:
+            array = array[:, None]
         array = floats(array, 4, "paths", "(n, k, 12, 2)")
         given = None if weights is None else floats(weights, 2, "weights", "(n, k)").copy()
         _core.TestSet.check(*asked, array, given, goals)
-    except ValueError as error:
+    except (TypeError, ValueError) as error:
         raise ValueError(f"{title}: {error}") from None
     return array, given, None if goals is None else goals.copy()
 
@@ -309,7 +310,7 @@ class _Progress:
             try:
                 from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
             except ImportError:
-                return
+                raise ImportError("progress=True shows a bar of tqdm, which is not installed") from None
             self._bar = tqdm(desc=title)
 
     def update(self, done: int, total: int) -> None:

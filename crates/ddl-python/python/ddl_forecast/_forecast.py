@@ -213,6 +213,7 @@ class Forecast:
                 raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
             row = int(found[0])
         if not rows.any():
+            _core.check_plans(_plans(plans))
             count = len(_plans(plans))
             return Risk(np.zeros(count), np.zeros((count, len(self))), np.zeros((count, 12)), np.zeros((count, 12)))
         total, people, steps, until = _core.risks(joint, _plans(plans), within, row, seen)
@@ -221,8 +222,12 @@ class Forecast:
         return Risk(total, of_each, steps, until)
 
     def nearest(self, plans: Sequence[ArrayLike] | Floats) -> tuple[Floats, Floats]:
-        """Expected least distance of plans from everybody (p,) and from each pedestrian (p, n), metres."""
+        """Expected least distance (m) of plans from everybody (p,), inf without anybody, and each pedestrian (p, n)."""
         joint, rows = self._arrays()
+        if not rows.any():
+            _core.check_plans(_plans(plans))
+            count = len(_plans(plans))
+            return np.full(count, np.inf), np.full((count, len(self)), np.nan)
         nearest, people = _core.clearances(joint, _plans(plans))
         of_each = np.full((len(nearest), len(self)), np.nan)
         of_each[:, rows] = people
@@ -382,6 +387,8 @@ def write_forecasts(path: str | os.PathLike[str], forecasts: Sequence[Forecast])
             )
         if not isinstance(forecast.frame, int):
             raise ValueError(f"only forecasts of frame numbers can be written, not of the time {forecast.frame}")
+        if forecast.frames.dtype.kind not in "iu":
+            raise ValueError(f"forecasts between two frames, such as {forecast.frames[0]:.2f}, cannot be written")
         keep = forecast.valid
         rows.append(
             (

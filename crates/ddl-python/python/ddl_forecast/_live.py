@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Integers, floats, moments
+from ddl_forecast._arrays import floats, moments
 from ddl_forecast._forecast import DoubtWarning, Forecast
 from ddl_forecast._forecaster import Forecaster
 
@@ -120,10 +120,10 @@ class Live:
         with self._turn:
             numbers = np.array([self._number(one) for one in people], dtype=np.int64)
             parts, misfits, unwritten = self._core.observe(number, unit, numbers, positions)
-            self._forget(numbers)
             words = self._words
             names = None if parts is None else [words.get(one, one) for one in parts["ids"]]
             misfit = None if not misfits else (words.get(misfits[0][0], misfits[0][0]), misfits[0][1])
+            self._forget({*numbers.tolist(), *(() if parts is None else parts["ids"])})
         self._tell_refusal()
         if unwritten is not None:
             warnings.warn(
@@ -165,15 +165,17 @@ class Live:
             raise ValueError(f"the id {one!r} is neither a whole number nor a word")
         if one not in self._numbers:
             self._numbers[one] = self._next
-            self._words[self._next] = one
             self._next += 1
-        return self._numbers[one]
+        number = self._numbers[one]
+        # In the order in which they were last seen.
+        self._words.pop(number, None)
+        self._words[number] = one
+        return number
 
-    def _forget(self, seen: Integers) -> None:
+    def _forget(self, keep: set[int]) -> None:
         """Drop the words of pedestrians who left before the last frames, so that a long stream needs little memory."""
         if len(self._words) <= MOST_WORDS:
             return
-        keep = {int(one) for one in seen}
         for number in list(self._words)[: len(self._words) - MOST_WORDS // 2]:
             if number not in keep:
                 del self._numbers[self._words.pop(number)]

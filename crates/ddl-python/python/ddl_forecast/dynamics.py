@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Floats, floats
+from ddl_forecast._arrays import Floats, floats, unmasked
 
 __all__ = ["Certificate", "Flow"]
 
@@ -59,6 +59,7 @@ class Flow:
     """
 
     def __init__(self, goal: ArrayLike, P: ArrayLike) -> None:
+        unmasked(P, "P")
         matrices = np.asarray(P, dtype=np.float64)
         if matrices.ndim not in (2, 3) or matrices.shape[-2:] != (2, 2):
             raise ValueError(f"P must have the shape (2, 2) or (steps, 2, 2); found {matrices.shape}")
@@ -89,6 +90,7 @@ class Flow:
 
 
 def _points(values: ArrayLike, name: str) -> tuple[bool, Floats]:
+    unmasked(values, name)
     array = np.ascontiguousarray(values, dtype=np.float64)
     if array.ndim not in (1, 2) or array.shape[-1] != 2:
         raise ValueError(f"{name} must have the shape (2,) or (m, 2); found {array.shape}")
