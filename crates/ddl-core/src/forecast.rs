@@ -83,6 +83,7 @@ impl Forecast {
         )?;
         check_length("weights", "pedestrian, hypothesis", pairs, weights.len())?;
         check_finite("positions", &positions, HORIZON, hypotheses)?;
+        check_finite("weights", weights.as_chunks::<1>().0, 1, hypotheses)?;
         check_weights(&weights, hypotheses)?;
         if let Some(goals) = &goals {
             check_length("goals", "pedestrian, hypothesis", pairs, goals.len())?;
@@ -377,9 +378,9 @@ fn check_range(
     }
 }
 
-fn check_finite(
+fn check_finite<const D: usize>(
     field: &'static str,
-    positions: &[Position],
+    positions: &[[f64; D]],
     per_pair: usize,
     hypotheses: usize,
 ) -> Result<(), ForecastShapeError> {
@@ -400,14 +401,6 @@ fn check_finite(
 fn check_weights(weights: &[f64], hypotheses: usize) -> Result<(), ForecastShapeError> {
     for (pedestrian, row) in weights.chunks_exact(hypotheses).enumerate() {
         for (hypothesis, &weight) in row.iter().enumerate() {
-            if !weight.is_finite() {
-                let field = "weights";
-                return Err(ForecastShapeError::NotFinite {
-                    field,
-                    pedestrian,
-                    hypothesis,
-                });
-            }
             if weight < 0.0 {
                 return Err(ForecastShapeError::NegativeWeight {
                     pedestrian,

@@ -59,7 +59,12 @@ impl Analogues {
             let index = QuerySpan::Observed.velocities() - 1;
             return Err(TrackError::VelocityOverflow { index }.into());
         }
-        let experts = analogues.iter().take(REPORTED_EXPERTS).map(Expert::from).collect();
+        let expert = |alike: &Alike| Expert {
+            index: alike.index,
+            distance: alike.distance.into(),
+            mirrored: alike.mirrored,
+        };
+        let experts = analogues.iter().take(REPORTED_EXPERTS).map(expert).collect();
         Ok(GoalSet::new(goals, choice.weights, experts))
     }
 

@@ -32,8 +32,8 @@ impl GoalSet {
     ///   pedestrian with noise;
     /// - x = exp(-(w / 5 mm)²) measures how uniform the motion is.
     ///
-    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/tried.md` lists the
-    /// recordings on which the constants were chosen.
+    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). The constants
+    /// were chosen on validation splits of training recordings.
     ///
     /// Who has turned by more than 120°, and whose last two steps agree, goes on at the mean velocity since the turn.
     ///

@@ -116,7 +116,12 @@ impl GoalEstimator {
                 let goals = clustering.centres.iter().map(place).collect();
                 let share = |size: usize| size as f64 / ends.len() as f64;
                 let weights = clustering.sizes().into_iter().map(share).collect();
-                let experts = experts.iter().map(Expert::from).collect();
+                let expert = |neighbour: &Neighbour| Expert {
+                    index: neighbour.index,
+                    distance: neighbour.distance,
+                    mirrored: false,
+                };
+                let experts = experts.iter().map(expert).collect();
                 Ok(GoalSet::new(goals, weights, experts))
             }
         }

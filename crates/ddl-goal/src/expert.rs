@@ -1,9 +1,5 @@
 //! An expert: a pedestrian of the library that a goal set comes from.
 
-use ddl_softdtw::Neighbour;
-
-use crate::motion_index::Alike;
-
 /// A pedestrian of the library that moved like the observed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expert {
@@ -14,24 +10,4 @@ pub struct Expert {
     pub distance: f64,
     /// Whether the expert is the mirror image of the track.
     pub mirrored: bool,
-}
-
-impl From<&Neighbour> for Expert {
-    fn from(neighbour: &Neighbour) -> Self {
-        Self {
-            index: neighbour.index,
-            distance: neighbour.distance,
-            mirrored: false,
-        }
-    }
-}
-
-impl From<&Alike> for Expert {
-    fn from(alike: &Alike) -> Self {
-        Self {
-            index: alike.index,
-            distance: f64::from(alike.distance),
-            mirrored: alike.mirrored,
-        }
-    }
 }

@@ -175,8 +175,7 @@ impl GoalSet {
         geometric_median(&self.goals, &sharpened)
     }
 
-    /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings
-    /// (`docs/tried.md`).
+    /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings.
     const SHARPNESS: f64 = 1.5;
 
     /// Index of the goal nearest to `point` (m), the first of equally near ones. With the true endpoint this is the

@@ -7,7 +7,6 @@ use ddl_data::{Clock, LiveError, PedestrianId, Position, checked_frame};
 use serde::{Deserialize, Serialize};
 
 use crate::error::MemoryError;
-use crate::piece::is_remembered;
 use crate::track::{RunningTrack, Track};
 
 /// Largest capacity in segments; a memory of this size takes up to 180 MB.
@@ -138,8 +137,7 @@ impl SceneMemory {
 
     /// Adds the pedestrians of one frame in any order, with world positions in metres. Frame numbers must increase.
     ///
-    /// A memory accepts the frames that [`LiveTracks`](ddl_data::LiveTracks) accepts. It ignores positions with x or y
-    /// beyond 1e7 m.
+    /// A memory accepts the frames that [`LiveTracks`](ddl_data::LiveTracks) accepts.
     ///
     /// # Errors
     /// [`MemoryError::Frame`] for a frame that [`checked_frame`] refuses. The memory is then unchanged.
@@ -155,8 +153,7 @@ impl SceneMemory {
         self.last_frame = Some(frame);
         let step = self.frame_step;
         self.end_tracks_that(|track| track.is_gone(frame, step));
-        let positions = positions.into_iter();
-        for (id, position) in positions.filter(|(_, position)| is_remembered(*position)) {
+        for (id, position) in positions {
             self.seen.add(position);
             match self.running.entry(id) {
                 Entry::Occupied(mut running) => {

@@ -177,13 +177,10 @@ impl Piece {
     /// The first of the segments nearest to a motion.
     pub(crate) fn nearest_lane(&self, motion: &FirstMotion) -> usize {
         let distances = self.distances(motion);
-        (1..self.len()).fold(0, |least, lane| {
-            if distances[lane] < distances[least] {
-                lane
-            } else {
-                least
-            }
-        })
+        let lanes = 0..self.len();
+        lanes
+            .min_by(|&a, &b| distances[a].total_cmp(&distances[b]))
+            .unwrap_or(0)
     }
 }
 

@@ -8,7 +8,7 @@ mod learned;
 mod origin;
 
 pub use crate::kernel::Sizes;
-pub use digest::tensors_digest;
+pub use digest::{in_hex, tensors_digest};
 pub use file::{StoredTensor, TensorData, find_tensor, load_weights, read_tensors, save_weights, write_tensors};
 pub use half_precision::HalfTensor;
 pub(crate) use layout::Initial;

@@ -2,9 +2,7 @@
 
 use crate::error::PlanError;
 use ddl_core::{HORIZON, Position, TIME_STEP, between};
-
-/// Largest coordinate (m), as of tracks.
-const FARTHEST: f64 = 1e7;
+use ddl_data::COORDINATE_LIMIT;
 
 /// A row of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,33 +36,21 @@ impl Plan {
         for (row, point) in (1..).zip(&points) {
             let [x, y] = point.position;
             let numbers = [("time", point.time), ("x", x), ("y", y), ("radius", point.radius)];
-            if let Some(&(field, value)) = numbers.iter().find(|(_, number)| !number.is_finite()) {
-                let more = "";
-                return Err(PlanError::Number {
-                    row,
-                    field,
-                    value,
-                    more,
-                });
-            }
+            let wrong = |number: Option<&(&'static str, f64)>, more| {
+                number.map_or(Ok(()), |&(field, value)| {
+                    Err(PlanError::Number {
+                        row,
+                        field,
+                        value,
+                        more,
+                    })
+                })
+            };
+            wrong(numbers.iter().find(|(_, number)| !number.is_finite()), "")?;
             let mut places = numbers[1..].iter();
-            if let Some(&(field, value)) = places.find(|(_, number)| number.abs() > FARTHEST) {
-                let more = " of at most 1e7 m in size";
-                return Err(PlanError::Number {
-                    row,
-                    field,
-                    value,
-                    more,
-                });
-            }
-            if point.radius < 0.0 {
-                return Err(PlanError::Number {
-                    row,
-                    field: "radius",
-                    value: point.radius,
-                    more: ", at least 0",
-                });
-            }
+            let far = places.find(|(_, number)| number.abs() > COORDINATE_LIMIT);
+            wrong(far, " of at most 1e7 m in size")?;
+            wrong(numbers[3..].iter().find(|(_, radius)| *radius < 0.0), ", at least 0")?;
         }
         for (row, pair) in (2..).zip(points.windows(2)) {
             let [before, time] = [pair[0].time, pair[1].time];

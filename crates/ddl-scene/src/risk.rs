@@ -52,7 +52,7 @@ impl Futures {
     /// For each plan, how likely somebody comes within `within` metres of its edge, if nobody sees it. The pedestrian
     /// `ego` who follows the plan, if there is one, is no risk to itself.
     ///
-    /// A thousand plans among 25 pedestrians with 20 futures take some 20 ms on one core (`cargo bench -p ddl-scene`).
+    /// A thousand plans among 25 pedestrians with 20 futures take some 20 ms on one core.
     /// The result does not depend on the number of threads, nor on which other plans there are.
     ///
     /// # Errors

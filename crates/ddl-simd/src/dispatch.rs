@@ -1,7 +1,5 @@
 //! The instruction sets of the processor, and running kernels with one.
 
-use std::fmt;
-
 use fearless_simd::Level;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Simd as _;
@@ -31,16 +29,6 @@ impl InstructionSet {
     pub fn available() -> Vec<Self> {
         let sets = [Self::Portable, Self::Avx2, Self::Avx512].into_iter();
         sets.filter(|&set| Dispatch::new(set).is_some()).collect()
-    }
-}
-
-impl fmt::Display for InstructionSet {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Portable => "portable",
-            Self::Avx2 => "AVX2",
-            Self::Avx512 => "AVX-512",
-        })
     }
 }
 

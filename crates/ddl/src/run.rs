@@ -7,7 +7,6 @@ pub(crate) mod enough_weights;
 pub(crate) mod goal_recipe;
 pub(crate) mod lock;
 pub(crate) mod model_source;
-pub(crate) mod sha256;
 pub(crate) mod starting_model;
 pub(crate) mod track_units;
 pub(crate) mod training_data;

@@ -29,7 +29,7 @@ use crate::pace::Pace;
 use crate::position::HORIZON;
 use crate::region_table::{LevelQuantiles, RegionTable};
 
-/// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places (`docs/regions.md`).
+/// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places.
 const STEP: f64 = 0.06;
 /// Weight of a frame with nine pedestrians or more. Outcomes come up to 12 steps late; with a larger weight the
 /// quantiles of crowds oscillate.

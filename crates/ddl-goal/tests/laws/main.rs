@@ -11,5 +11,4 @@ mod estimator;
 mod from_endpoints;
 mod heading;
 mod published;
-mod star_files;
 mod tracks;

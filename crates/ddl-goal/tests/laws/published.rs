@@ -2,11 +2,10 @@
 
 use std::collections::BTreeMap;
 
-use ddl_data::{Dataset, Recording, WindowRule};
-use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, QuerySpan};
+use ddl_data::{Convention, Dataset, PedestrianId, Recording, Window, WindowRule, locate};
+use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use serde::Deserialize;
 
-use crate::star_files::{StarWindows, dataset, goal_error, tracks_of};
 use crate::tracks::estimator;
 
 #[derive(Deserialize)]
@@ -24,15 +23,33 @@ struct PublishedPedestrian {
     goal_error_m: f64,
 }
 
+/// The 20 positions (m) of pedestrians, by start frame and pedestrian.
+type StarWindows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
+
+/// Distance from the true endpoint to the nearest goal (m).
+fn goal_error(goals: &GoalSet, track: &[[f64; 2]]) -> f64 {
+    let goal = goals.goals()[goals.nearest(track[19])];
+    (goal[0] - track[19][0]).hypot(goal[1] - track[19][1])
+}
+
 /// The recordings, or `None` (with the reason printed) where they may be absent.
 fn recordings() -> Option<Dataset> {
-    let dataset_read = dataset().inspect_err(|error| println!("not compared: {error}"));
-    assert!(dataset_read.is_ok() || std::env::var_os("CI").is_none());
-    dataset_read.ok()
+    let folder = locate(Convention::Star, None);
+    let read = folder.and_then(|folder| Dataset::load(Convention::Star, &folder));
+    assert!(read.is_ok() || std::env::var_os("CI").is_none());
+    read.inspect_err(|error| println!("not compared: {error}")).ok()
 }
 
 fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows {
-    tracks_of(&dataset.recording(recording).unwrap().windows(rule))
+    let windows = dataset.recording(recording).unwrap().windows(rule).into_iter();
+    let keyed = |window: Window| {
+        let key = |id: &PedestrianId| (window.start_frame(), id.0);
+        let keys: Vec<_> = window.pedestrians().iter().map(key).collect();
+        keys.into_iter()
+            .enumerate()
+            .map(move |(i, key)| (key, window.track(i).to_vec()))
+    };
+    windows.flat_map(keyed).collect()
 }
 
 fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEstimator {

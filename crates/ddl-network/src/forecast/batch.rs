@@ -225,9 +225,13 @@ fn check_shares(windows: &[Window], shares: Option<&[Vec<f64>]>) -> Result<(), N
         let expected = format!("a share from 0 to 1 for every pedestrian of {windows} windows");
         Err(NetworkError::shape("forecast", expected, got))
     };
-    let lengths = windows.iter().map(Window::len);
-    if !lengths.eq(shares.iter().map(Vec::len)) {
+    if shares.len() != windows.len() {
         return fault(format!("shares of {} windows", shares.len()));
+    }
+    let mut pairs = windows.iter().zip(shares).enumerate();
+    if let Some((w, (window, shares))) = pairs.find(|(_, (window, shares))| window.len() != shares.len()) {
+        let pedestrians = window.len();
+        return fault(format!("{} for the {pedestrians} of window {w}", shares.len()));
     }
     let is_share = |share: &&f64| (0.0..=1.0).contains(*share);
     match shares.iter().flatten().find(|share| !is_share(share)) {

@@ -295,7 +295,7 @@ mod tests {
                 .map(|((row, &goal), bounds)| next(row.0, goal, row.2, (1e-8, time), Some(&bounds)).map(f32::to_bits))
                 .collect();
             for set in InstructionSet::available() {
-                prop_assert_eq!(&moved(set, &rows, &goals, time), &expected, "{}", set);
+                prop_assert_eq!(&moved(set, &rows, &goals, time), &expected, "{:?}", set);
             }
         }
     }
@@ -323,7 +323,7 @@ mod tests {
                     dt: 0.4,
                 };
                 Dispatch::new(set).unwrap().run(Usual(time, &mut exact));
-                assert_eq!(exact & 0xffff, 0xffff, "{set}, {done}");
+                assert_eq!(exact & 0xffff, 0xffff, "{set:?}, {done}");
             }
         }
     }

@@ -84,7 +84,10 @@ impl EncoderKernel {
         let attention = AttentionResults {
             query,
             newest,
-            attended: Attended::of_mixed(mixed),
+            attended: Attended {
+                mixed,
+                normalisers: Vec::new(),
+            },
         };
         self.after_attention(x, attention, dropouts, keep)
     }

@@ -41,17 +41,7 @@ pub(crate) struct Attended {
     pub(crate) mixed: Buffer,
     /// For each entry, scene, pair of queries and group of heads: the largest score (log2 units), and 1 / Σ 2^(score −
     /// largest). Empty without `keep`.
-    normalisers: Vec<[Lanes; 2]>,
-}
-
-impl Attended {
-    /// Without normalisers.
-    pub(crate) fn of_mixed(mixed: Buffer) -> Self {
-        Self {
-            mixed,
-            normalisers: Vec::new(),
-        }
-    }
+    pub(crate) normalisers: Vec<[Lanes; 2]>,
 }
 
 impl SpatialAttention {

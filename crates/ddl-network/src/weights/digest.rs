@@ -23,6 +23,11 @@ pub fn tensors_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
         part(format!("{:?} {:?}", view.dtype(), view.shape()).as_bytes());
         part(view.data());
     }
+    in_hex(hasher)
+}
+
+/// The digest in hexadecimal.
+pub fn in_hex(hasher: Sha256) -> String {
     let digest = hasher.finalize();
     digest.iter().fold(String::new(), |mut text, byte| {
         let _ = write!(text, "{byte:02x}"); // Writing to a string cannot fail.

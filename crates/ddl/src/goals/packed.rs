@@ -6,10 +6,9 @@ use crate::device::Device;
 use crate::error::DdlError;
 use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::model_source::ModelSource;
-use crate::run::sha256;
 use crate::trust::familiarity::TrainingMotions;
 use crate::trust::fingerprints::TrackFingerprints;
-use ddl_network::weights::{HalfTensor, Weights};
+use ddl_network::weights::{HalfTensor, Weights, in_hex};
 use ddl_network::{ForecastWindows, NetworkError, ProposeEndpoints};
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
@@ -250,5 +249,5 @@ pub(crate) fn digest(texts: [&str; 2], tensors: &[HalfTensor]) -> String {
         part(&shape);
         part(&tensor.bytes);
     }
-    sha256::in_hex(hasher)
+    in_hex(hasher)
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `config.json` | everything that determines the result ([`RunConfig`]) |
 //! | `metrics.jsonl` | one line for each epoch |
-//! | `optimizer.safetensors` | weights, Adam's state and progress of an unfinished run |
+//! | `optimizer.safetensors` | weights, Adam's state and progress |
 //! | `epochs/NNN.safetensors` | weights after some of the epochs |
 //! | `experts.safetensors` | tracks of the expert library |
 //! | `fingerprints.bin` | hashes of the motions that it was trained on |

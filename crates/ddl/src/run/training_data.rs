@@ -1,7 +1,7 @@
 //! The recordings and windows of a training, and their digests.
 
-use crate::run::sha256;
 use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
+use ddl_network::weights::in_hex;
 use sha2::{Digest as _, Sha256};
 
 /// Training uses every window of 20 steps of the convention.
@@ -40,7 +40,7 @@ pub(crate) fn digest_of_recording(recording: &Recording) -> String {
             hasher.update(coordinate.to_le_bytes());
         }
     }
-    sha256::in_hex(hasher)
+    in_hex(hasher)
 }
 
 /// SHA-256 of the windows' positions.
@@ -55,5 +55,5 @@ pub(crate) fn digest(windows: &[Window]) -> String {
             }
         }
     }
-    sha256::in_hex(hasher)
+    in_hex(hasher)
 }

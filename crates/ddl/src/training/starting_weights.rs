@@ -5,10 +5,9 @@ use crate::model::ddl::Ddl;
 use crate::run::config::leaves;
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::model_source::ModelSource;
-use crate::run::sha256;
 use crate::run::starting_model::InitialModel;
 use crate::trust::fingerprints::TrackFingerprints;
-use ddl_network::weights::Weights;
+use ddl_network::weights::{Weights, in_hex};
 use ddl_network::{DeviceChoice, StarConfig};
 use sha2::{Digest as _, Sha256};
 
@@ -52,7 +51,7 @@ impl StartingWeights {
         }
         let record = InitialModel {
             model: source.to_string(),
-            sha256: sha256::in_hex(hasher),
+            sha256: in_hex(hasher),
         };
         Ok(Self {
             network,

@@ -2,10 +2,10 @@
 //! they were chosen. `ddl-python/examples/regions.py` writes the regions in `calibration.json`, from places, each
 //! forecast by a model that was not trained on it.
 
-use crate::run::sha256;
 use ddl_core::{Pace, RegionTable, mean_speed};
 use ddl_data::{HORIZON, Position};
 use ddl_goal::GoalSet;
+use ddl_network::weights::in_hex;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::sync::{Arc, LazyLock};
@@ -73,7 +73,7 @@ impl Calibration {
     pub(crate) fn digest() -> String {
         let mut hasher = Sha256::new();
         hasher.update(FILE);
-        sha256::in_hex(hasher)
+        in_hex(hasher)
     }
 
     pub(crate) fn shared_regions() -> Arc<RegionTable> {
