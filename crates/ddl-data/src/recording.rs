@@ -15,8 +15,8 @@ const SLOWEST: f64 = 1.2;
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
-/// Invariants: at least one observation, every position finite and within [`COORDINATE_LIMIT`], at most one observation per pedestrian and frame, a
-/// positive frame step.
+/// Invariants: at least one observation, every position finite and within [`COORDINATE_LIMIT`], at most one observation
+/// per pedestrian and frame, a positive frame step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     name: Arc<str>,

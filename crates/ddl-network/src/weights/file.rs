@@ -141,8 +141,8 @@ pub fn find_tensor<'a>(tensors: &'a [StoredTensor], name: &str, path: &Path) -> 
 /// Writes tensors, their origin and the SHA-256 of their numbers.
 ///
 /// # Errors
-/// [`NetworkError::Checkpoint`] if a tensor has not as many numbers as its shape, [`NetworkError::Io`] if the file cannot
-/// be written. An existing file then stays unchanged.
+/// [`NetworkError::Checkpoint`] if a tensor has not as many numbers as its shape, [`NetworkError::Io`] if the file
+/// cannot be written. An existing file then stays unchanged.
 pub fn write_tensors(tensors: &[StoredTensor], origin: &Origin, path: &Path) -> Result<(), NetworkError> {
     let parts: Vec<_> = tensors.iter().map(StoredTensor::bytes).collect();
     let broken = |error: safetensors::SafeTensorError| NetworkError::checkpoint(path, error.to_string());
