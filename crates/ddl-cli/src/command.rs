@@ -60,7 +60,7 @@ pub(crate) struct Machine {
     /// Device: auto, cpu or cuda
     #[arg(long, default_value = "cpu")]
     pub(crate) device: DeviceChoice,
-    /// Threads for the network and goal search [default: all cores; 1 for forecast, view and goals]
+    /// Threads for the network and goal search [default: all cores; 1 for forecast, risk, occupancy and view]
     #[arg(long, value_parser = at_least_one)]
     threads: Option<usize>,
 }
@@ -184,15 +184,19 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         );
     }
     if convention == Convention::Simulated {
-        if let Some(data) = data {
-            bail!(
-                "--data {} has no effect: the simulated crowd has no files",
-                data.display()
-            );
-        }
+        ensure_no_files(data)?;
         return Ok(Dataset::simulated(Dataset::CROWDS));
     }
     Ok(Dataset::load(convention, &folder(convention, data)?)?)
+}
+
+fn ensure_no_files(data: Option<&Path>) -> anyhow::Result<()> {
+    data.map_or(Ok(()), |data| {
+        bail!(
+            "--data {} has no effect: the simulated crowd has no files",
+            data.display()
+        )
+    })
 }
 
 fn folder(convention: Convention, data: Option<&Path>) -> anyhow::Result<PathBuf> {

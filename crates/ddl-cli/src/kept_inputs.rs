@@ -14,7 +14,7 @@ const OUTPUTS: [&str; 4] = ["output", "out", "svg", "folder"];
 const OUTPUT_FILES: [&str; 2] = ["--output", "--svg"];
 
 /// Options of files, also of the memory, that are no text to write to standard output.
-const NO_TEXTS: [&str; 3] = ["out", "folder", "memory"];
+const NO_TEXTS: [&str; 4] = ["out", "folder", "memory", "samples"];
 
 /// Options that name a run, of which every command writes and reads the same files.
 const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
@@ -167,7 +167,8 @@ fn lost(output: &Path, Named { option, path: input }: &Named<'_>) -> Option<Path
         } else {
             // Recordings also lie in folders of folders.
             let extension = there.extension().and_then(std::ffi::OsStr::to_str);
-            extension.is_some_and(|it| EXTENSIONS.contains(&it) || it == "memory")
+            let mut kinds = EXTENSIONS.iter().chain(&["memory", "db3"]);
+            extension.is_some_and(|it| kinds.any(|kind| it.eq_ignore_ascii_case(kind)))
         };
         there == here || (is_read && there.starts_with(&here)) || is_same_file(output, input)
     } else {

@@ -6,9 +6,9 @@ use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;
 
-/// The file of an output; `None` for standard output, which `-` names too.
+/// The file of an output; `None` for standard output, which `-` names too. A log that `/dev/stdout` leads to is kept.
 pub(crate) fn file_of(path: Option<&Path>) -> Option<&Path> {
-    path.filter(|path| *path != Path::new("-"))
+    path.filter(|path| !["-", "/dev/stdout"].map(Path::new).contains(path))
 }
 
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
@@ -35,10 +35,10 @@ pub(crate) fn write_parts<T: AsRef<str>>(
 /// Writes a file under a temporary name that is renamed.
 pub(crate) fn write_file(path: &Path, write: impl FnOnce(&mut File) -> anyhow::Result<()>) -> anyhow::Result<()> {
     let unwritable = || format!("cannot write to {}", path.display());
-    // A device or a pipe cannot be replaced, and `/dev/stdout` not either when it leads to a file.
-    let is_of_system = ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder));
-    if path.exists() && (is_of_system || !path.is_file()) {
-        let file = File::options().write(true).open(path);
+    // A device or a pipe cannot be replaced, and what is open already not either when it leads to a file.
+    let open = ["/dev/fd", "/dev/stdout", "/dev/stderr", "/proc"];
+    if path.exists() && (!path.is_file() || open.iter().any(|open| path.starts_with(open))) {
+        let file = File::options().append(true).open(path);
         return write(&mut file.with_context(unwritable)?);
     }
     let mut failed = None;

@@ -1,6 +1,7 @@
 //! Plans from files.
 
 use crate::command::forecast::StreamState;
+use crate::small_file;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::GivenPlan;
@@ -91,11 +92,11 @@ struct Row {
 /// together and have one name.
 pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
     let name = path.display();
+    let text = small_file::read(path)?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
-        .from_path(path)
-        .with_context(|| format!("cannot read the plan {name}"))?;
+        .from_reader(text.as_bytes());
     let headers = reader
         .headers()
         .with_context(|| format!("cannot read the plan {name}"))?

@@ -1,6 +1,6 @@
 //! The leak test: whether a forecast changes with the future.
 
-use ddl_core::{Forecast, ForecastError, Forecaster, OBSERVED, Position, WINDOW, Window};
+use ddl_core::{Forecast, ForecastError, Forecaster, HORIZON, OBSERVED, Position, WINDOW, Window};
 
 /// Looks for a leak: forecasts the window as it is, without its future, and with futures changed one frame of one
 /// pedestrian at a time and all together. `None` when every forecast is bit-identical, else the change that a forecast
@@ -40,7 +40,8 @@ fn moved(p: Position) -> Position {
     [17.0 - 3.0 * p[1], 5.0 + 2.0 * p[0]]
 }
 
-fn bits(forecast: &Forecast) -> Vec<u64> {
+/// Every number of a forecast as bits, because `==` on floats does not distinguish 0.0 and -0.0.
+pub fn bits(forecast: &Forecast) -> Vec<u64> {
     let mut bits = vec![forecast.pedestrians() as u64, forecast.hypotheses() as u64];
     for i in 0..forecast.pedestrians() {
         for k in 0..forecast.hypotheses() {
@@ -51,6 +52,12 @@ fn bits(forecast: &Forecast) -> Vec<u64> {
                 bits.extend(p.map(f64::to_bits));
             }
         }
+        let spread = (0..HORIZON).map(|t| forecast.scale(i, t));
+        bits.extend(
+            spread
+                .chain([forecast.familiarity(i)])
+                .map(|number| number.map_or(2, f64::to_bits)),
+        );
     }
     bits
 }

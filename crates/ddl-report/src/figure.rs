@@ -6,7 +6,7 @@
 //! Maps show metres at one scale for both axes. Colours are those of the [page](crate::page).
 
 mod axes;
-mod cut;
+pub(crate) mod cut;
 pub(crate) mod drawing;
 mod legend;
 pub(crate) mod marks;

@@ -148,12 +148,8 @@ impl Time {
     }
 }
 
-/// A length of time.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Duration {
-    pub sec: i32,
-    pub nanosec: u32,
-}
+/// A length of time, with the same fields.
+pub type Duration = Time;
 
 /// `geometry_msgs/Point`, and `geometry_msgs/Vector3`, which has the same fields (m).
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]

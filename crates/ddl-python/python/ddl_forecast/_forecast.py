@@ -387,7 +387,7 @@ def write_forecasts(path: str | os.PathLike[str], forecasts: Sequence[Forecast])
             )
         if not isinstance(forecast.frame, int):
             raise ValueError(f"only forecasts of frame numbers can be written, not of the time {forecast.frame}")
-        if forecast.frames.dtype.kind not in "iu":
+        if forecast.frames is not None and forecast.frames.dtype.kind not in "iu":
             raise ValueError(f"forecasts between two frames, such as {forecast.frames[0]:.2f}, cannot be written")
         keep = forecast.valid
         rows.append(

@@ -3,7 +3,7 @@
 use crate::figure::drawing::text_width;
 
 /// A text of at most this width (pixels) at a size of letters; the rest is cut.
-pub(super) fn cut(text: &str, size: f64, width: f64) -> String {
+pub(crate) fn cut(text: &str, size: f64, width: f64) -> String {
     let fits = |line: &str| text_width(line, size) <= width;
     if fits(text) {
         return text.to_owned();

@@ -1,5 +1,6 @@
 //! The chart at the head of the page: the errors of every forecaster on every fold, as dots.
 
+use crate::figure::cut::cut;
 use crate::figure::drawing::Drawing;
 use crate::figure::scale::Scale;
 use crate::page::standing::{Standing, StandingLine};
@@ -89,7 +90,7 @@ fn wide(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
     for (row, line) in lines.iter().enumerate() {
         let y = top + LINE * (row as f64 + 0.5);
         let class = format!("small {}", name_class(chart.is_subject(line)));
-        drawing.text(&class, [0.0, y + 4.0], shortened(&line.label, 44));
+        drawing.text(&class, [0.0, y + 4.0], cut(&line.label, 12.0, 296.0));
         let guesses = format!("K = {}", line.hypotheses);
         drawing.text("small end", [left, y + 4.0], guesses);
     }
@@ -125,7 +126,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
             drawing.text(
                 &format!("small halo {}", name_class(chart.is_subject(line))),
                 [0.0, y - 4.0],
-                format!("{}, K = {}", shortened(&line.label, 44), line.hypotheses),
+                format!("{}, K = {}", cut(&line.label, 12.0, 296.0), line.hypotheses),
             );
             dumbbell(
                 &mut drawing,
@@ -169,11 +170,4 @@ fn dumbbell(drawing: &mut Drawing, scale: &Scale, pair: Option<[f64; 2]>, subjec
     drawing.circle(&format!("ade{first}"), [a, y], 4.4);
     let class = if subject { "small halo subject" } else { "small halo" };
     drawing.text(class, [b + 9.0, y + 4.0], format!("{ade:.3}"));
-}
-
-fn shortened(words: &str, most: usize) -> String {
-    if words.chars().count() <= most {
-        return words.to_owned();
-    }
-    words.chars().take(most - 1).chain(['…']).collect()
 }

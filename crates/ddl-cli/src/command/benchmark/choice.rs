@@ -3,8 +3,8 @@
 use crate::command::benchmark::method::Method;
 use crate::command::benchmark::plan::{Plan, Settings, Training};
 use crate::command::benchmark::profile::Profile;
-use crate::command::folder;
 use crate::command::recipe::Recipe;
+use crate::command::{ensure_no_files, folder};
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -83,7 +83,10 @@ impl PlanOptions {
             }
         };
         let folder_of_recordings = match convention {
-            Convention::Simulated => None,
+            Convention::Simulated => {
+                ensure_no_files(data)?;
+                None
+            }
             recorded => Some(std::path::absolute(folder(recorded, data)?)?),
         };
         if self.convention.is_none() {
