@@ -15,6 +15,16 @@ fn outputs_are_overwritten() {
         let _ = place.ok("windows --convention own --data mine --output mine/windows.jsonl");
         let _ = place.ok("pack --model run --out run/packed.safetensors");
     }
+    // Ordinary files in a folder of the system.
+    #[cfg(target_os = "linux")]
+    {
+        let file = format!("/dev/shm/ddl-{}.csv", std::process::id());
+        std::fs::write(&file, "old\n".repeat(100_000)).unwrap();
+        let _ = place.ok(&format!("forecast tracks.csv --model run --output {file}"));
+        let made = std::fs::read_to_string(&file).unwrap();
+        std::fs::remove_file(file).unwrap();
+        assert!(made.len() > 1000 && !made.contains("old"));
+    }
 }
 
 #[test]

@@ -209,7 +209,7 @@ impl Units {
             );
         }
         let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
-        let format = Format::guess_with(file, &bytes, &self.choice()?)?;
+        let format = Format::guess(file, &bytes, &self.choice()?)?;
         let recording = parse_columns(&bytes, &file.display().to_string(), format, &self.choice()?)?;
         Ok((recording, format.name(), None))
     }

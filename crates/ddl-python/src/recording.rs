@@ -215,7 +215,7 @@ impl Recording {
         })?;
         let format = match format {
             Some(name) => format_named(name)?,
-            None => Format::guess_with(&path, &bytes, &choice).map_err(of_any)?,
+            None => Format::guess(&path, &bytes, &choice).map_err(of_any)?,
         };
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         let read = py.detach(|| parse_columns(&bytes, &path.display().to_string(), format, &choice));

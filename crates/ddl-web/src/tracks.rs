@@ -27,7 +27,7 @@ impl Tracks {
             return Err(format!("{name}: {words} {name}").into());
         }
         let (choice, units) = (options.choice()?, options.units()?);
-        let format = Format::guess_with(Path::new(name), bytes, &choice)?;
+        let format = Format::guess(Path::new(name), bytes, &choice)?;
         let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let mut rows = parse_columns(bytes, name, format, &choice)?.with_name(&*stem);
         if let Some(homography) = units.homography {

@@ -17,7 +17,7 @@ pub(super) fn read(bytes: &[u8]) {
         return;
     };
     let name = NAMES[usize::from(*name) % NAMES.len()];
-    let Ok(format) = Format::guess(name.as_ref(), text) else {
+    let Ok(format) = Format::guess(name.as_ref(), text, &ddl_data::ColumnChoice::default()) else {
         return;
     };
     let Ok(recording) = parse_recording(text, name, format) else {

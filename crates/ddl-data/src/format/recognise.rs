@@ -22,19 +22,11 @@ impl Format {
     /// columns and their kind decide; of four columns, whether the first or the second counts the frames: along it,
     /// pedestrians move in small steps.
     ///
-    /// Reading with a guessed format still checks everything.
+    /// Reading with a guessed format still checks everything. `choice`: the columns that the user names.
     ///
     /// # Errors
     /// Where both columns may count the frames; `path` names the file.
-    pub fn guess(path: &Path, bytes: &[u8]) -> Result<Self, FormatError> {
-        Self::guess_with(path, bytes, &ColumnChoice::default())
-    }
-
-    /// As [`guess`](Self::guess), with the columns that the user names.
-    ///
-    /// # Errors
-    /// As [`guess`](Self::guess).
-    pub fn guess_with(path: &Path, bytes: &[u8], choice: &ColumnChoice) -> Result<Self, FormatError> {
+    pub fn guess(path: &Path, bytes: &[u8], choice: &ColumnChoice) -> Result<Self, FormatError> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let named = |name: &str| extension.eq_ignore_ascii_case(name);
         let text = String::from_utf8_lossy(bytes);
@@ -55,9 +47,9 @@ impl Format {
         if edinburgh::is_first(first) {
             return Ok(Self::Edinburgh);
         }
+        let has_header = !fields(Separator::of(first), first).iter().any(|field| is_number(field));
         let separator = Separator::of_numbers(first);
         let first = fields(separator, first);
-        let has_header = !lines.first_fields().iter().any(|field| is_number(field));
         if has_header || lines.has_header_in_comment(first.len(), choice) {
             // A word of text that is no table, such as that of another file, is a row with too few fields.
             let is_row = separator == Separator::Blanks && first.len() < 3 && !named("csv");
@@ -120,13 +112,6 @@ impl<'a> Lines<'a> {
         lines.filter(|line| !line.trim().is_empty() && !is_comment(line))
     }
 
-    /// The fields of the first line, as those of a header.
-    fn first_fields(self) -> Vec<String> {
-        self.filled()
-            .next()
-            .map_or_else(Vec::new, |line| fields(Separator::of(line), line))
-    }
-
     fn has_header_in_comment(self, count: usize, choice: &ColumnChoice) -> bool {
         let lines = self.text.split(self.end);
         let mut comments = lines.take_while(|line| line.trim().is_empty() || is_comment(line));
@@ -152,7 +137,10 @@ impl<'a> Lines<'a> {
     fn numbers<const N: usize>(self, separator: Separator) -> impl Iterator<Item = [f64; N]> {
         self.filled().filter_map(move |line| {
             let fields = separator.fields(line, 1).ok()?;
-            let numbers = fields.iter().take(N).map(|field| field.parse().ok());
+            let numbers = fields
+                .iter()
+                .take(N)
+                .map(|field| separator.with_point(field).parse().ok());
             numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
         })
     }

@@ -19,7 +19,8 @@ impl Separator {
     pub(super) fn of(line: &str) -> Self {
         let count = |separator: char| line.matches(separator).count();
         let (commas, semicolons) = (count(','), count(';'));
-        if semicolons > commas {
+        // No decimal mark is a semicolon.
+        if semicolons > 0 && semicolons >= commas {
             Self::Semicolon
         } else if commas > 0 {
             Self::Comma

@@ -298,7 +298,7 @@ impl<R: BufRead> FrameReader<R> {
             }
             let comments = std::mem::take(&mut self.comments);
             let begin = comments.clone() + text;
-            let format = Format::guess_with("".as_ref(), begin.as_bytes(), &self.choice)?;
+            let format = Format::guess("".as_ref(), begin.as_bytes(), &self.choice)?;
             if matches!(format, Format::Vsp | Format::Edinburgh) {
                 let problem = format!("lines of the format {format} are not in order of time; give the file");
                 return Err(in_file(FilePlace::line(line).wrong(problem)));

@@ -145,7 +145,7 @@ fn times_are_exact_to_a_microsecond_and_print_back() {
         };
         let rest = if header.contains(',') { ",7,0,0" } else { "" };
         let text = format!("{header}\n{time}{rest}\n").trim_start().to_owned();
-        let format = Format::guess("".as_ref(), text.as_bytes()).unwrap();
+        let format = Format::guess("".as_ref(), text.as_bytes(), &ddl_data::ColumnChoice::default()).unwrap();
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         assert_eq!(recording.frames()[0].to_string(), expected, "{case}");
         let clock = recording.stated_clock().unwrap().unwrap();

@@ -8,7 +8,8 @@ use std::path::Path;
 
 /// Reads a file like the program: its format is recognised.
 fn read(name: &str, text: &str) -> Result<Recording, String> {
-    let format = Format::guess(Path::new(name), text.as_bytes()).map_err(|error| error.to_string())?;
+    let format =
+        Format::guess(Path::new(name), text.as_bytes(), &ColumnChoice::default()).map_err(|error| error.to_string())?;
     parse_recording(text.as_bytes(), name, format).map_err(|error| error.to_string())
 }
 
@@ -150,7 +151,7 @@ fn formats_of_others_are_read_and_what_was_assumed_is_told() {
         let (name, text) = file.split_once(": ").unwrap();
         let text = text.replace("\\n", "\n").replace("\\t", "\t") + "\n";
         let mut expected = expected.trim_start_matches("=> ").splitn(7, ' ');
-        let format = Format::guess(Path::new(name), text.as_bytes()).unwrap();
+        let format = Format::guess(Path::new(name), text.as_bytes(), &ColumnChoice::default()).unwrap();
         assert_eq!(Some(format.name()), expected.next(), "{file}");
         let mut number = || expected.next().unwrap().parse::<f64>().unwrap();
         let (frame, pedestrian, place) = (number() as i64, PedestrianId(number() as i64), [number(), number()]);
@@ -183,7 +184,7 @@ fn every_format_is_recognised() {
         let (file, format) = case.split_once(" => ").unwrap();
         let (name, text) = file.split_once("::").unwrap();
         let text = text.replace("\\n", "\n").replace("\\t", "\t");
-        let guessed = Format::guess(name.as_ref(), text.as_bytes()).unwrap();
+        let guessed = Format::guess(name.as_ref(), text.as_bytes(), &ColumnChoice::default()).unwrap();
         assert_eq!(guessed.name(), format, "{case}");
     }
 }
@@ -267,7 +268,7 @@ fn columns_rows_and_units_can_be_chosen() {
     let choice = ColumnChoice::default()
         .with_columns("frame=t0,pedestrian=who,x=east,y=north")
         .unwrap();
-    let format = Format::guess_with(Path::new("n.txt"), numpy.as_bytes(), &choice).unwrap();
+    let format = Format::guess(Path::new("n.txt"), numpy.as_bytes(), &choice).unwrap();
     assert_eq!(
         parse_columns(numpy.as_bytes(), "n", format, &choice)
             .unwrap()

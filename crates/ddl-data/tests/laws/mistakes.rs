@@ -1,11 +1,11 @@
 //! Mistakes in files and streams are named with their place: the cases of `mistakes.txt`.
 
-use ddl_data::{DataError, Format, FrameReader, parse_recording};
+use ddl_data::{ColumnChoice, DataError, Format, FrameReader, parse_recording};
 
 const CASES: &str = include_str!("mistakes.txt");
 
 fn of_file(name: &str, text: &str, format: Option<Format>) -> Option<DataError> {
-    let guessed = || Format::guess(name.as_ref(), text.as_bytes());
+    let guessed = || Format::guess(name.as_ref(), text.as_bytes(), &ColumnChoice::default());
     match format.map_or_else(guessed, Ok) {
         Ok(format) => parse_recording(text.as_bytes(), "f", format).err(),
         Err(error) => Some(error.into()),
