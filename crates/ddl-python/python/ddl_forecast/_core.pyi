@@ -20,6 +20,7 @@ __all__ = [
     "UNFAMILIAR",
     "__version__",
     "baseline",
+    "check_plans",
     "clearances",
     "collisions",
     "conventions",
