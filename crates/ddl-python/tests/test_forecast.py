@@ -203,7 +203,7 @@ def test_numbers_and_words_are_different_pedestrians(forecaster):
 
 def test_words_of_absent_pedestrians_are_forgotten(forecaster, monkeypatch):
     monkeypatch.setattr("ddl_forecast._live.MOST_WORDS", 20)
-    live = ddl.Live(forecaster, fps=2.5)
+    live = ddl.Live(forecaster, fps=2.5, max_age=1)
     for frame in range(60):
         forecast = live.observe(frame, ["stays", f"passes {frame}"], [[0.4 * frame, 0.0], [5.0, 5.0]])
     assert len(live._words) <= 20 and forecast.ids.tolist() == ["stays"]
