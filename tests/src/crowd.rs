@@ -12,7 +12,7 @@ const EXPERTS: usize = 600;
 /// The five simulated scenes.
 pub fn dataset() -> &'static Dataset {
     static DATASET: OnceLock<Dataset> = OnceLock::new();
-    DATASET.get_or_init(|| Dataset::simulated(Dataset::CROWDS))
+    DATASET.get_or_init(|| Dataset::simulated(Dataset::CROWD_SEED))
 }
 
 /// Test windows with their futures, of 2 to `most` pedestrians, spread over the whole recording.

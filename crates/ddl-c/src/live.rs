@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Whole numbers below it are exact.
 const LARGEST: f64 = (1_u64 << 53) as f64;
-/// After a moment in an error.
+/// The unit that error messages give after a time.
 const OF_TIMES: &str = " s (frames are microseconds)";
 
 #[derive(Debug)]

@@ -185,7 +185,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
     }
     if convention == Convention::Simulated {
         ensure_no_files(data)?;
-        return Ok(Dataset::simulated(Dataset::CROWDS));
+        return Ok(Dataset::simulated(Dataset::CROWD_SEED));
     }
     Ok(Dataset::load(convention, &folder(convention, data)?)?)
 }

@@ -40,7 +40,7 @@ impl Dataset {
     }
 
     /// The seed of the crowds of the convention `simulated`, the same for all users.
-    pub const CROWDS: u64 = 1;
+    pub const CROWD_SEED: u64 = 1;
 
     /// Simulates crowds in five scenes, for machines without real recordings: a social-force model whose pedestrians
     /// walk, meet, queue, stand and keep together. The same seed gives the same bytes. Accuracy measured on them does

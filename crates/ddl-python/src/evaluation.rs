@@ -26,7 +26,7 @@ fn parsed<T: std::str::FromStr<Err: std::error::Error + 'static>>(word: &str) ->
 
 fn dataset(convention: Convention, folder: Option<PathBuf>) -> Result<Dataset, DdlError> {
     if convention == Convention::Simulated {
-        return Ok(Dataset::simulated(Dataset::CROWDS));
+        return Ok(Dataset::simulated(Dataset::CROWD_SEED));
     }
     let folder = locate(convention, folder.as_deref())?;
     Ok(Dataset::load(convention, &folder)?)

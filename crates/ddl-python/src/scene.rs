@@ -52,7 +52,7 @@ fn futures((past, paths, weights, spread): &JointArrays<'_>) -> PyResult<Futures
     Futures::new(&window, forecast).map_err(of_any)
 }
 
-/// Whether these are plans, where there is nobody.
+/// Checks the plans of a forecast that holds no pedestrian, whose risk is 0 without a computation.
 #[pyfunction]
 pub(crate) fn check_plans(plans: Vec<PyReadonlyArray2<'_, f64>>) -> PyResult<()> {
     plans.iter().try_for_each(|rows| plan(rows).map(drop))
@@ -124,7 +124,11 @@ pub(crate) fn occupancy<'py>(
     let area = match (area, &futures) {
         (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
         (None, Some(futures)) => futures.area(margin, cell),
-        (None, None) => return Err(PyValueError::new_err("nobody can be forecast: give the area")),
+        (None, None) => {
+            return Err(PyValueError::new_err(
+                "the forecast holds no pedestrian, so the size of the grids is unknown: give area=(x0, y0, x1, y1)",
+            ));
+        }
     };
     let area = area.map_err(of_any)?;
     let times = Occupancy::every(every).map_err(of_any)?;

@@ -349,7 +349,7 @@ def test_joint_futures_and_their_answers(forecaster, crossing):
     for ask in (nobody.risk, nobody.nearest):
         with pytest.raises(ValueError, match="sort the rows"):
             ask([plan[::-1]])
-    with pytest.raises(ValueError, match="give the area"):
+    with pytest.raises(ValueError, match="give area="):
         nobody.occupancy()
     with pytest.raises(ValueError, match="is not among"):
         forecast.risk([plan], ego=77)

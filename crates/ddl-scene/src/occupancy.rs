@@ -66,10 +66,10 @@ impl Area {
         })
     }
 
-    /// Whether the grids of so many times can be kept together: 200 million numbers take 0.8 GB.
+    /// Checks that the grids of so many times fit into memory together.
     ///
     /// # Errors
-    /// They have more numbers.
+    /// They have more than 200 million values, which take 0.8 GB.
     pub fn ensure_kept(&self, times: usize) -> Result<(), SceneError> {
         let numbers = (times * self.width * self.height) as f64;
         let right = "at most 200000000: take larger cells, a smaller area or fewer times";

@@ -11,7 +11,7 @@ use wasm_bindgen::prelude::*;
 
 /// Microseconds in a second: times are counted in them.
 const MICROSECONDS: f64 = 1e6;
-/// After a moment in an error.
+/// The unit that error messages give after a time.
 const OF_TIMES: &str = " s (frames are microseconds)";
 /// Options that `LiveOptions` of `types.d.ts` leaves out.
 const OF_FILES: [&str; 6] = ["homography", "columns", "keep", "unit", "last", "moments"];

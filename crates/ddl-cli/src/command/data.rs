@@ -68,11 +68,11 @@ impl Data {
             of_each.push(facts);
             total.add(&summary);
         }
-        let known = || warn_of_model(read.iter().map(|(_, read)| &read.recording));
+        let warn_of_models = || warn_of_model(read.iter().map(|(_, read)| &read.recording));
         if self.telling.json {
             let of_memories: Vec<Value> = memories.iter().map(MemoryOfFile::facts).collect();
             output::print_json(&json!({"recordings": of_each, "memories": of_memories, "total": total}))?;
-            known()?;
+            warn_of_models()?;
             return recordings::all_read(errors, files.len());
         }
         if total.recordings > 1 {
@@ -82,7 +82,7 @@ impl Data {
             writeln!(text, "{memory}")?;
         }
         output::print(&text)?;
-        known()?;
+        warn_of_models()?;
         recordings::all_read(errors, files.len())
     }
 }

@@ -94,6 +94,7 @@ impl Evaluate {
         if self.samples.is_some() && !self.protocols.contains(&Protocol::Joint) {
             bail!("--samples writes the futures of the protocol joint: add --protocol joint");
         }
+        // Refused before the evaluation and not after it.
         let is_full = |folder: &&PathBuf| folder.read_dir().is_ok_and(|mut files| files.next().is_some());
         if let Some(folder) = self.samples.as_ref().filter(is_full) {
             bail!("{} is not empty; give a new folder for --samples", folder.display());

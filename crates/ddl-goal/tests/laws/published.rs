@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_data::{Convention, Dataset, PedestrianId, Recording, Window, WindowRule, locate};
+use ddl_data::{Convention, Dataset, Recording, Window, WindowRule, locate};
 use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use serde::Deserialize;
 
@@ -41,15 +41,14 @@ fn recordings() -> Option<Dataset> {
 }
 
 fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows {
-    let windows = dataset.recording(recording).unwrap().windows(rule).into_iter();
-    let keyed = |window: Window| {
-        let key = |id: &PedestrianId| (window.start_frame(), id.0);
-        let keys: Vec<_> = window.pedestrians().iter().map(key).collect();
-        keys.into_iter()
-            .enumerate()
-            .map(move |(i, key)| (key, window.track(i).to_vec()))
-    };
-    windows.flat_map(keyed).collect()
+    let windows = dataset.recording(recording).unwrap().windows(rule);
+    let pairs = windows
+        .iter()
+        .flat_map(|window| (0..window.len()).map(move |i| (window, i)));
+    let key = |window: &Window, i: usize| (window.start_frame(), window.pedestrians()[i].0);
+    pairs
+        .map(|(window, i)| (key(window, i), window.track(i).to_vec()))
+        .collect()
 }
 
 fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEstimator {

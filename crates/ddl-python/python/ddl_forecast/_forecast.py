@@ -213,8 +213,9 @@ class Forecast:
                 raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
             row = int(found[0])
         if not rows.any():
-            _core.check_plans(_plans(plans))
-            count = len(_plans(plans))
+            given = _plans(plans)
+            _core.check_plans(given)
+            count = len(given)
             return Risk(np.zeros(count), np.zeros((count, len(self))), np.zeros((count, 12)), np.zeros((count, 12)))
         total, people, steps, until = _core.risks(joint, _plans(plans), within, row, seen)
         of_each = np.zeros((len(total), len(self)))
@@ -225,8 +226,9 @@ class Forecast:
         """Expected least distance (m) of plans from everybody (p,), inf without anybody, and each pedestrian (p, n)."""
         joint, rows = self._arrays()
         if not rows.any():
-            _core.check_plans(_plans(plans))
-            count = len(_plans(plans))
+            given = _plans(plans)
+            _core.check_plans(given)
+            count = len(given)
             return np.full(count, np.inf), np.full((count, len(self)), np.nan)
         nearest, people = _core.clearances(joint, _plans(plans))
         of_each = np.full((len(nearest), len(self)), np.nan)

@@ -26,7 +26,7 @@ use tch::Tensor;
 /// gradients are added. Smaller parts take more processor time.
 const PART: usize = 128;
 /// The origin of a window is a multiple of this, metres.
-const ORIGINS: f64 = 1024.0;
+const ORIGIN_SPACING: f64 = 1024.0;
 
 /// A network in training. A run that was stopped, saved and resumed gives the same weights as an uninterrupted run.
 #[derive(Debug)]
@@ -66,10 +66,9 @@ impl Trainer {
             goals.retain(|_| of_windows.next().is_some_and(Window::has_future));
         }
         windows.retain(Window::has_future);
-        // In single precision, coordinates of maps are rounded to half a metre. Origins are rounded so that those of
-        // other recordings are 0.
+        // Single precision rounds coordinates of maps to half a metre. Within 512 m of the origin nothing changes.
         for (w, window) in windows.iter_mut().enumerate() {
-            let origin = window.observed(0)[OBSERVED - 1].map(|x| ORIGINS * (x / ORIGINS).round());
+            let origin = window.observed(0)[OBSERVED - 1].map(|x| ORIGIN_SPACING * (x / ORIGIN_SPACING).round());
             let relative = |position: Position| [0, 1].map(|axis| position[axis] - origin[axis]);
             *window = window.map_positions(|_, _, position| relative(position));
             for goal in goals.iter_mut().flat_map(|goals| &mut goals[w]) {
