@@ -125,9 +125,7 @@ pub(crate) fn occupancy<'py>(
         (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
         (None, Some(futures)) => futures.area(margin, cell),
         (None, None) => {
-            return Err(PyValueError::new_err(
-                "the forecast holds no pedestrian, so the size of the grids is unknown: give area=(x0, y0, x1, y1)",
-            ));
+            return Err(PyValueError::new_err("no pedestrian could be forecast: give area="));
         }
     };
     let area = area.map_err(of_any)?;
