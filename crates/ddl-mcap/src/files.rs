@@ -22,44 +22,47 @@ fn is_sqlite(path: &Path) -> bool {
     path.extension().is_some_and(|it| it.eq_ignore_ascii_case("db3"))
 }
 
-/// The first file of a recording that its list names and that is not there.
-fn missing_part(folder: &Path) -> Result<Option<String>, String> {
+/// The files that the metadata of a recording lists, in their order.
+fn listed(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let wrong = |error: &dyn std::error::Error| format!("{METADATA}: {error}");
     let text = std::fs::read_to_string(folder.join(METADATA)).map_err(|error| wrong(&error))?;
     let list: Value = serde_saphyr::from_str(&text).map_err(|error| wrong(&error))?;
     let names = list["rosbag2_bagfile_information"]["relative_file_paths"].as_array();
     let names = names.into_iter().flatten().filter_map(Value::as_str);
-    let mut missing = names.filter(|name| !folder.join(name).exists());
-    Ok(missing.next().map(str::to_owned))
+    let file = |name: &str| {
+        // Files that were compressed as a whole may be unpacked beside their old names.
+        let unpacked = name.strip_suffix(".zstd").map(|name| folder.join(name));
+        let file = unpacked.filter(|file| file.exists()).unwrap_or(folder.join(name));
+        let missing = || format!("{METADATA} lists {name}, which is missing; bring it back, or name one of the files");
+        file.exists().then_some(file).ok_or_else(missing)
+    };
+    names.map(file).collect()
 }
 
-/// The MCAP files of a log, in order.
-pub(crate) fn files(path: &Path) -> Result<Vec<PathBuf>, LogError> {
-    let place = path.display();
-    let mut files = vec![path.to_owned()];
+/// The MCAP files of a log, in order, and a note on those in its folder that do not belong to it.
+pub(crate) fn files(path: &Path) -> Result<(Vec<PathBuf>, Option<String>), LogError> {
+    let wrong = |problem: String| LogError::at(path.display())(problem);
+    let (mut files, mut others) = (vec![path.to_owned()], Vec::new());
     if path.is_dir() {
-        let entries = path
-            .read_dir()
-            .map_err(|error| LogError::at(&place)(error.to_string()))?;
-        files = entries.flatten().map(|entry| entry.path()).collect();
-        let missing = missing_part(path).map_err(|problem| LogError::at(&place)(problem))?;
-        if let Some(name) = missing {
-            let problem = format!("{METADATA} lists {name}, which is missing; bring it back, or name one of the files");
-            return Err(LogError::at(&place)(problem));
-        }
+        files = listed(path).map_err(wrong)?;
+        let entries = path.read_dir().map_err(|error| wrong(error.to_string()))?;
+        others = entries.flatten().map(|entry| entry.path()).collect();
+        others.retain(|file| is_mcap(file) && !files.contains(file));
     }
     let sqlite = files.iter().any(|file| is_sqlite(file));
     files.retain(|file| is_mcap(file));
     if files.is_empty() {
-        return Err(LogError::at(&place)(if sqlite {
+        return Err(wrong(if sqlite {
             "a bag of SQLite; write it as MCAP first (pip install rosbags; rosbags-convert --src BAG --dst NEW \
              --dst-storage mcap)"
                 .to_owned()
         } else {
-            "no file in it ends in .mcap; unpack files that are compressed as a whole".to_owned()
+            format!("{METADATA} lists no file that ends in .mcap; unpack files that are compressed as a whole")
         }));
     }
-    // bag_10 follows bag_9.
-    files.sort_by_key(|file| (file.as_os_str().len(), file.clone()));
-    Ok(files)
+    let note = others.first().map(|other| {
+        let (count, name) = (others.len(), other.display());
+        format!("{METADATA} does not list {name}, and it is not read ({count} such files)")
+    });
+    Ok((files, note))
 }

@@ -50,6 +50,8 @@ impl Messages {
                 let data = data.ok_or("a record goes beyond the end of its chunk")?;
                 self.taken += head.len() + data.len();
                 message = message_of(&mut self.channels, opcode, data)?;
+            } else if self.taken < self.chunk.len() {
+                return Err("a record goes beyond the end of its chunk".to_owned());
             } else {
                 match self.reader.next_event() {
                     None

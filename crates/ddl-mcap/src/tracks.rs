@@ -7,11 +7,11 @@ use crate::messages::Messages;
 use ddl_core::{FRAME_LIMIT, PedestrianId};
 use ddl_data::{COORDINATE_LIMIT, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped};
 use mcap::Channel;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Topics that an error lists.
+/// Topics and classes that are listed.
 const MOST_LISTED: usize = 20;
 /// Bytes of a pedestrian's name.
 const LONGEST_NAME: usize = 256;
@@ -42,7 +42,8 @@ pub struct TrackTopic {
 /// A file cannot be read; a message of the topic, or what leads to it, is damaged or of an unknown kind; no topic or
 /// several hold tracks.
 pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -> Result<LoggedTracks, LogError> {
-    let (files, mut topics, mut notes) = (files(path)?, BTreeMap::<String, Topic>::new(), Vec::new());
+    let (files, note) = files(path)?;
+    let (mut topics, mut notes) = (BTreeMap::<String, Topic>::new(), Vec::from_iter(note));
     for file in &files {
         let (file_name, mut time) = (file.display(), 0.0);
         let mut messages = Messages::open(file).map_err(LogError::at(&file_name))?;
@@ -119,6 +120,8 @@ struct Topic {
     /// Whether the times are those of the log; `None` without tracks.
     is_logged: Option<bool>,
     left_out: BTreeMap<String, usize>,
+    /// The first classes that were read.
+    classes: BTreeSet<String>,
 }
 
 impl Topic {
@@ -141,8 +144,14 @@ impl Topic {
             .iter()
             .map(|(what, count)| format!("; {count} rows left out: {what}"));
         let left_out: String = left_out.collect();
+        let classes: Vec<&str> = self.classes.iter().map(String::as_str).collect();
+        let classes = match &classes[..] {
+            [] => String::new(),
+            classes => format!(", classes read {}", classes.join(", ")),
+        };
         format!(
-            "topic {name} ({kind}, {messages} messages): times {logged}, positions in the frame {frame_id:?}{left_out}"
+            "topic {name} ({kind}, {messages} messages): times {logged}, positions in the frame \
+             {frame_id:?}{classes}{left_out}"
         )
     }
 
@@ -169,6 +178,8 @@ impl Topic {
             let is_kept = keep(&seen.class);
             if !is_kept {
                 *self.left_out.entry(format!("class {}", seen.class)).or_default() += 1;
+            } else if !seen.class.is_empty() && self.classes.len() < MOST_LISTED {
+                self.classes.insert(seen.class.clone());
             }
             is_kept
         });

@@ -179,6 +179,9 @@ def test_what_cannot_be_read_is_named(program, folder, tmp_path):
     shutil.copytree(folder / "bag", tmp_path / "bag")
     (tmp_path / "bag/bag.mcap").rename(tmp_path / "bag/other.mcap")
     assert "metadata.yaml lists bag.mcap, which is missing" in error("forecast", tmp_path / "bag")
+    (tmp_path / "bag/bag.mcap").write_bytes(whole)
+    unlisted = run(program, "data", tmp_path / "bag", check=True).stderr
+    assert "metadata.yaml does not list" in unlisted and "other.mcap, and it is not read (1 such files)" in unlisted
     words = "MCAP has no place for --certificate and --region"
     for option in [["--certificate"], ["--region", "0.9"]]:
         assert words in error("forecast", folder / "ZSTD.mcap", *option, "-o", tmp_path / "x.mcap")
