@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::category::MotionKind;
+use crate::motion_kind::MotionKind;
 use crate::pedestrian_scores::PedestrianScores;
 use crate::protocol::Protocol;
 

@@ -14,7 +14,6 @@
 //! Densities were compared with scipy: `tests/reference/distribution.py` writes the numbers that a test reads.
 
 pub mod baseline;
-pub mod category;
 mod category_scores;
 mod conditions;
 mod error;
@@ -23,19 +22,20 @@ pub mod external;
 mod fixture;
 pub mod leak;
 pub mod metric;
+mod motion_kind;
 mod pedestrian_scores;
 mod protocol;
 mod scored_window;
 mod scores;
 pub mod significance;
 
-pub use category::MotionKind;
 pub use category_scores::CategoryScores;
 pub use conditions::{Conditions, RecordingErrors, ResultRow};
 pub use error::{EvaluationError, WindowProblem};
 pub use metric::deployable::DeployableErrors;
 pub use metric::joint::{FutureCollisions, JointScores};
 pub use metric::stability::StabilityScores;
+pub use motion_kind::MotionKind;
 pub use protocol::Protocol;
 pub use scored_window::ScoredWindow;
 pub use scores::Scores;

@@ -1,12 +1,12 @@
 //! The metrics of one pedestrian of one window.
 
-use crate::category::MotionKind;
 use crate::metric::amd::DistributionErrors;
 use crate::metric::collision::{self, PEDESTRIAN_RADIUS, collides, collides_with_true_futures};
 use crate::metric::displacement::{DisplacementErrors, expected, goal_fde};
 use crate::metric::diversity::Diversity;
 use crate::metric::kde::kde_nll;
 use crate::metric::region::{RegionScores, weight_log_loss};
+use crate::motion_kind::MotionKind;
 use crate::scored_window::ScoredWindow;
 
 /// Thresholds of the miss rate: 0.5 m, and those of other works; metres.

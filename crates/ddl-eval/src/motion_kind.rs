@@ -1,4 +1,6 @@
 //! Kinds of motion: standing, straight on, turning, slowing down, speeding up.
+//!
+//! They read the future and group results after the forecasts are made; forecasts must not depend on them.
 
 use std::fmt;
 
