@@ -89,7 +89,7 @@ impl StandingLine {
     fn of(line: &TableLine<'_>, label: String, folds: &[&str]) -> Self {
         let protocol = line.conditions().protocol;
         let pair = |mean: &dyn Fn(usize) -> Option<f64>| Some([mean(0)?, mean(1)?]);
-        let on_fold = |fold: &&str| pair(&|at| Some(line.on_fold(fold, |s| s.errors(protocol)[at])?.mean));
+        let on_fold = |fold: &&str| pair(&|at| Some(line.on_fold(fold, |s| Some(s.errors(protocol)[at]))?.mean));
         let count = |number: fn(&Scores) -> usize| -> usize {
             let first = folds.iter().filter_map(|fold| line.on(fold).next());
             first.map(|row| number(&row.scores)).sum()
@@ -100,7 +100,7 @@ impl StandingLine {
             settings: line.settings(),
             hypotheses: line.rows[0].scores.hypotheses,
             folds: folds.iter().map(on_fold).collect(),
-            mean: pair(&|at| Some(line.over_folds(folds, |s| s.errors(protocol)[at])?.mean)),
+            mean: pair(&|at| Some(line.over_folds(folds, |s| Some(s.errors(protocol)[at]))?.mean)),
             scored: [count(|s| s.pedestrians), count(|s| s.windows)],
         }
     }

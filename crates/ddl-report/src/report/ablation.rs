@@ -92,7 +92,7 @@ fn measured(group: &ResultGroup<'_>) -> Table {
         for line in group.lines.iter().filter(is_of_row) {
             let seeds: Vec<String> = line.seeds().iter().flatten().map(u64::to_string).collect();
             let start = row.start().into_iter().chain([seeds.join(", ")]);
-            let fde = or_nothing(line.over_folds(&folds, |s| s.fde_at_min_ade));
+            let fde = or_nothing(line.over_folds(&folds, |s| Some(s.fde_at_min_ade)));
             table.row(start.chain(errors(line, &folds)).chain([fde]));
         }
     }

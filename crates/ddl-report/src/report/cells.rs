@@ -20,10 +20,10 @@ pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> Stri
 pub(super) fn errors(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
     let protocol = line.conditions().protocol;
     let of_fold = |fold: &&str| {
-        let error = |at: usize| line.on_fold(fold, |s| s.errors(protocol)[at]);
+        let error = |at: usize| line.on_fold(fold, |s| Some(s.errors(protocol)[at]));
         pair(error(0), error(1))
     };
-    let mean = |at: usize| line.over_folds(folds, |s| s.errors(protocol)[at]);
+    let mean = |at: usize| line.over_folds(folds, |s| Some(s.errors(protocol)[at]));
     folds.iter().map(of_fold).chain([pair(mean(0), mean(1))]).collect()
 }
 

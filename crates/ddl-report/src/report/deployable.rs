@@ -66,13 +66,11 @@ fn row(
         |errors: DeployableErrors| errors.worst_ade,
     ];
     let cell = |value: &dyn Fn(fn(DeployableErrors) -> f64) -> Option<f64>| {
-        let [ade, fde, worst] = metrics.map(|metric| value(metric).filter(|mean| !mean.is_nan()));
-        let (ade, fde, worst) = (ade?, fde?, worst?);
-        Some(format!("{ade:.3}/{fde:.3} ({worst:.2})"))
+        let [ade, fde, worst] = metrics.map(value);
+        Some(format!("{:.3}/{:.3} ({:.2})", ade?, fde?, worst?))
     };
-    let of = |scores: &Scores, metric: fn(DeployableErrors) -> f64| choice(scores).map_or(f64::NAN, metric);
-    let of_fold = |fold: &&str| cell(&|metric| Some(line.on_fold(fold, |s| of(s, metric))?.mean));
-    let mean = cell(&|metric| Some(line.over_folds(folds, |s| of(s, metric))?.mean));
+    let of_fold = |fold: &&str| cell(&|metric| Some(line.on_fold(fold, |s| choice(s).map(metric))?.mean));
+    let mean = cell(&|metric| Some(line.over_folds(folds, |s| choice(s).map(metric))?.mean));
     let cells: Vec<Option<String>> = folds.iter().map(of_fold).chain([mean]).collect();
     if cells.iter().any(Option::is_some) {
         let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| NOTHING.to_owned()));

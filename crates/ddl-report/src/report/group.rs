@@ -190,17 +190,19 @@ impl<'a> TableLine<'a> {
         seeds
     }
 
-    /// A metric on one fold, with its spread over the seeds.
-    pub(crate) fn on_fold(&self, fold: &str, metric: impl Fn(&Scores) -> f64) -> Option<SeedSpread> {
-        SeedSpread::of(&self.on(fold).map(|row| metric(&row.scores)).collect::<Vec<_>>())
+    /// A metric on one fold, with its spread over the seeds; `None` if a seed lacks it.
+    pub(crate) fn on_fold(&self, fold: &str, metric: impl Fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
+        let values: Option<Vec<f64>> = self.on(fold).map(|row| metric(&row.scores)).collect();
+        SeedSpread::of(&values?)
     }
 
-    /// The unweighted mean over the folds, with its spread over the seeds; `None` unless every seed has every fold.
-    pub(crate) fn over_folds(&self, folds: &[&str], metric: impl Fn(&Scores) -> f64) -> Option<SeedSpread> {
+    /// The unweighted mean over the folds, with its spread over the seeds; `None` unless every seed has it on every
+    /// fold.
+    pub(crate) fn over_folds(&self, folds: &[&str], metric: impl Fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
         let mean_of_seed = |seed: Option<u64>| {
             let on_fold = |fold: &&str| {
                 let row = self.on(fold).find(|row| row.conditions.seed == seed)?;
-                Some(metric(&row.scores))
+                metric(&row.scores)
             };
             let values: Option<Vec<f64>> = folds.iter().map(on_fold).collect();
             values.map(|values| values.iter().sum::<f64>() / folds.len() as f64)

@@ -5,7 +5,6 @@ use ddl_eval::{JointScores, Protocol, Scores};
 use crate::document::{Part, Table};
 use crate::report::cells::{self, NOTHING};
 use crate::report::group::{ResultGroup, TableLine};
-use crate::report::spread::SeedSpread;
 
 /// A metric of the further tables: name of its column, decimals, value.
 type MetricColumn = (&'static str, usize, fn(&Scores) -> Option<f64>);
@@ -109,7 +108,7 @@ fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
         let present = line.present(&folds);
         let named = cells::folds(&present, &folds);
         let cells = metrics.iter().map(|&(_, decimals, metric)| {
-            let spread = over_folds(line, &present, metric);
+            let spread = line.over_folds(&present, metric);
             spread.map_or(NOTHING.to_owned(), |spread| format!("{spread:.decimals$}"))
         });
         table.row([label, named].into_iter().chain(cells));
@@ -122,14 +121,8 @@ pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
     let mut columns = FURTHER.iter().chain(&WHOLE).chain(&JOINT);
     let column = columns.find(|(column, ..)| *column == name);
     let mean = column.and_then(|&(_, decimals, metric)| {
-        let mean = over_folds(line, folds, metric)?.mean;
+        let mean = line.over_folds(folds, metric)?.mean;
         Some(format!("{mean:.decimals$}"))
     });
     mean.unwrap_or_else(|| NOTHING.to_owned())
-}
-
-/// `None` if a fold lacks the metric.
-fn over_folds(line: &TableLine<'_>, folds: &[&str], metric: fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
-    let spread = line.over_folds(folds, |s| metric(s).unwrap_or(f64::NAN));
-    spread.filter(|spread| !spread.mean.is_nan())
 }

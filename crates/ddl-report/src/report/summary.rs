@@ -111,11 +111,11 @@ fn error_cells(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
     let rounded = |spread: SeedSpread| format!("{:.3}", spread.mean);
     let mut cells = Vec::new();
     for fold in folds {
-        let ade = line.on_fold(fold, |s| s.min_ade).map(rounded);
-        let fde = line.on_fold(fold, |s| s.min_fde).map(rounded);
+        let ade = line.on_fold(fold, |s| Some(s.min_ade)).map(rounded);
+        let fde = line.on_fold(fold, |s| Some(s.min_fde)).map(rounded);
         cells.push(pair(ade, fde));
     }
-    let ade = line.over_folds(folds, |s| s.min_ade);
-    cells.push(pair(ade, line.over_folds(folds, |s| s.min_fde)));
+    let ade = line.over_folds(folds, |s| Some(s.min_ade));
+    cells.push(pair(ade, line.over_folds(folds, |s| Some(s.min_fde))));
     cells
 }
