@@ -115,7 +115,8 @@ impl Dataset {
         self.recordings
             .iter()
             .find(|r| r.name() == name)
-            .ok_or_else(|| DataError::UnknownRecording {
+            .ok_or_else(|| DataError::Unknown {
+                kind: "recording",
                 convention: self.convention.name(),
                 name: name.to_owned(),
                 known: self.recordings.iter().map(|r| r.name().to_owned()).collect(),
@@ -142,7 +143,8 @@ impl Dataset {
     /// # Errors
     /// If there is no such fold; the message lists the available ones.
     pub fn fold(&self, name: &str) -> Result<Fold<'_>, DataError> {
-        let unknown = || DataError::UnknownFold {
+        let unknown = || DataError::Unknown {
+            kind: "fold",
             convention: self.convention.name(),
             name: name.to_owned(),
             known: self.fold_names().into_iter().map(str::to_owned).collect(),

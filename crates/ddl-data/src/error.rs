@@ -70,22 +70,13 @@ pub enum DataError {
     NoFiles(&'static str),
     #[error("{problem}")]
     Own { problem: String },
-    #[error("no recording {name:?} in the {convention} convention; it has {}", .known.join(", "))]
-    UnknownRecording {
+    #[error("no {kind} {name:?} in the {convention} convention; it has {}", .known.join(", "))]
+    Unknown {
+        kind: &'static str,
         convention: &'static str,
         name: String,
         known: Vec<String>,
     },
     #[error("{name:?} is not one of these recordings: {}", .known.join(", "))]
-    NotATrainingRecording {
-        fold: String,
-        name: String,
-        known: Vec<String>,
-    },
-    #[error("no fold {name:?} in the {convention} convention; it has {}", .known.join(", "))]
-    UnknownFold {
-        convention: &'static str,
-        name: String,
-        known: Vec<String>,
-    },
+    NotATrainingRecording { name: String, known: Vec<String> },
 }

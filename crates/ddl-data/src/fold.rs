@@ -59,7 +59,6 @@ impl<'a> Fold<'a> {
         for name in names {
             let index = self.training.iter().position(|r| r.name() == name);
             let index = index.ok_or_else(|| DataError::NotATrainingRecording {
-                fold: self.name.to_owned(),
                 name: name.clone(),
                 known: self.training.iter().map(|r| r.name().to_owned()).collect(),
             })?;

@@ -71,13 +71,12 @@ pub enum PlausibilityWarning {
     )]
     Unseen { share: f64 },
     #[error(
-        "pedestrian {} jumps in the step that ends at frame {}, {:.1} m/s; is one of its two positions wrong, or does \
+        "pedestrian {} jumps in the step that ends at {when}, {:.1} m/s; is one of its two positions wrong, or does \
          the track continue with another pedestrian?",
-        .0.pedestrian,
-        .0.frame,
-        .0.speed
+        .fastest.pedestrian,
+        .fastest.speed
     )]
-    Jump(Fastest),
+    Jump { fastest: Fastest, when: String },
     #[error(
         "the frame numbers begin again in the file ({count} x), so its parts lie over each other; make a file of each"
     )]
@@ -135,7 +134,8 @@ impl Speeds {
         } else if median > IMPLAUSIBLE {
             Some(PlausibilityWarning::Fast { median })
         } else if fastest.speed > JUMP {
-            Some(PlausibilityWarning::Jump(fastest.clone()))
+            let (fastest, when) = (fastest.clone(), format!("frame {}", fastest.frame));
+            Some(PlausibilityWarning::Jump { fastest, when })
         } else {
             let brisk = self.brisk.filter(|&brisk| brisk < CREEPING);
             brisk.map(|brisk| PlausibilityWarning::Slow { brisk })

@@ -22,12 +22,15 @@ pub struct ColumnChoice {
 
 impl ColumnChoice {
     /// What a user gives: [columns](Self::with_columns), [keep](Self::keeping) and [unit](Self::in_unit), and whether a
-    /// homography [maps](Self::mapped) the positions.
+    /// homography will map the positions, which are then in pixels.
     ///
     /// # Errors
     /// As those; the message begins with the name of the option.
     pub fn given([columns, keep, unit]: [Option<&str>; 3], is_mapped: bool) -> Result<Self, String> {
-        let mut choice = Self::default();
+        let mut choice = Self {
+            is_mapped,
+            ..Self::default()
+        };
         if let Some(columns) = columns {
             choice = choice
                 .with_columns(columns)
@@ -39,7 +42,7 @@ impl ColumnChoice {
         if let Some(unit) = unit {
             choice = choice.in_unit(unit).map_err(|problem| format!("unit {problem}"))?;
         }
-        Ok(if is_mapped { choice.mapped() } else { choice })
+        Ok(choice)
     }
 
     /// Names the columns that hold the frame (or time), pedestrian, x, y, the sides of a box, class or scene, such as
@@ -70,15 +73,6 @@ impl ColumnChoice {
             self.time_unit = self.time_unit.or(time_unit);
         }
         Ok(self)
-    }
-
-    /// A homography will map the positions, which are then in pixels.
-    #[must_use]
-    pub fn mapped(self) -> Self {
-        Self {
-            is_mapped: true,
-            ..self
-        }
     }
 
     /// # Errors

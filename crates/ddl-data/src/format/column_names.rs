@@ -177,12 +177,15 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
 }
 
 /// The column of nanoseconds beside this one of whole seconds, as in stamps of ROS: its first words are the same.
-pub(super) fn nanoseconds_beside(names: &[&str], seconds: usize) -> Option<usize> {
-    let plain = words(names[seconds]).concat();
-    let stem = plain.strip_suffix("secs").or(plain.strip_suffix("sec"))?;
+/// The words of the names are written together.
+pub(super) fn nanoseconds_beside(names: &[String], seconds: usize) -> Option<usize> {
+    let stem = names[seconds]
+        .strip_suffix("secs")
+        .or(names[seconds].strip_suffix("sec"))?;
     let is_rest = |end: &str| is_one_of("nanosec nanosecs nsec nsecs", end);
-    let mut names = names.iter().map(|name| words(name).concat());
-    names.position(|name| name.strip_prefix(stem).is_some_and(is_rest))
+    names
+        .iter()
+        .position(|name| name.strip_prefix(stem).is_some_and(is_rest))
 }
 
 /// The words of a name in small letters: `trackId`, `track_id` and `Track ID` have the words track and id.

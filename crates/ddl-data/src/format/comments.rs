@@ -18,17 +18,31 @@ pub(super) fn is_comment(text: &str) -> bool {
 /// The rate that a comment states, such as `# framerate: 16 fps`.
 pub(super) fn rate_of(comment: &str) -> Option<f64> {
     let text = comment.to_ascii_lowercase();
-    let after = ["framerate", "frame rate", "frame_rate", "fps"]
-        .iter()
-        .find_map(|word| {
-            let (_, after) = text.split_once(word)?;
-            Some(after)
-        })?;
-    let number = after.trim_start_matches([':', '=', ' ', '\t']);
+    let mut rates = Vec::new();
+    for word in ["framerate", "frame rate", "frame_rate", "fps"] {
+        for (at, _) in text.match_indices(word) {
+            let after = text[at + word.len()..].trim_start();
+            let value = after.trim_start_matches([':', '=', ' ', '\t']);
+            let before = text[..at].rsplit(char::is_whitespace).find(|word| !word.is_empty());
+            let near = [before, value.split_ascii_whitespace().next()].map(|word| word.and_then(rate));
+            match near {
+                // What is assigned is the rate, even if it is none.
+                [_, assigned] if value.len() < after.len() => rates.push(assigned?),
+                near => rates.extend(near.into_iter().flatten()),
+            }
+        }
+    }
+    rates.dedup();
+    <[f64; 1]>::try_from(rates).ok().map(|[rate]| rate)
+}
+
+/// A word that is a rate, as `25`, `25fps`, `30000/1001`.
+fn rate(word: &str) -> Option<f64> {
+    let number = word.trim_matches(|c: char| ",;.()".contains(c));
     let number = number
-        .split_ascii_whitespace()
-        .next()?
-        .trim_end_matches(|c: char| c.is_alphabetic() || ",;.)".contains(c));
+        .strip_suffix("fps")
+        .or(number.strip_suffix("hz"))
+        .unwrap_or(number);
     let (above, below) = number.split_once('/').unwrap_or((number, "1"));
     let rate = above.parse::<f64>().ok()? / below.parse::<f64>().ok()?;
     (rate.is_finite() && rate > 0.0).then_some(rate)
@@ -59,6 +73,9 @@ mod tests {
             ("# fps: 1e1", Some(10.0)),
             ("# fps: 25, exact", Some(25.0)),
             ("# recorded (at fps: 25).", Some(25.0)),
+            ("# 1080p, 25 fps", Some(25.0)),
+            ("# 25 fps 1080p", Some(25.0)),
+            ("# camera 25 fps, tracks at 2.5 fps", None),
             ("# fps: 29,97", None),
             ("# fps 0", None),
             ("# fps: -1", None),

@@ -54,7 +54,7 @@ fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
         let is_near = stamp.abs() < FRAME_LIMIT;
         return is_near
             .then_some(stamp)
-            .ok_or_else(|| format!("time {} is after the year 2250", quoted(text)));
+            .ok_or_else(|| format!("time {} is not within 285 years of 1970", quoted(text)));
     };
     let scale = STAMPS_A_SECOND as f64 / a_second as f64;
     // Whole nanoseconds since 1970 have more digits than an `f64`.
@@ -64,7 +64,8 @@ fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
     let stamp = stamp.filter(|stamp| stamp.is_finite());
     let stamp = stamp.ok_or_else(|| not_a_time("time", &quoted(text), "a time"))?;
     if stamp.abs() >= FRAME_LIMIT as f64 {
-        let finer = "after the year 2250; if it counts milliseconds, call the column time_ms, or time_us or time_ns";
+        let finer =
+            "not within 285 years of 1970; if it counts milliseconds, call the column time_ms, or time_us or time_ns";
         return Err(format!("time {} is {finer}", quoted(text)));
     }
     Ok(stamp as i64)

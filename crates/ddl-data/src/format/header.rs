@@ -74,6 +74,7 @@ impl Header {
             found: Vec::new(),
             unknown: Vec::new(),
         };
+        let plain: Vec<String> = names.iter().map(|name| words(name).concat()).collect();
         let has_no_time = !names
             .iter()
             .any(|name| named(0, name).is_some_and(|named| named.role == Role::Time));
@@ -84,7 +85,7 @@ impl Header {
                 .find(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
             // x and y that are given stand for a box as well, and a box for x and y.
             let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
-            let by_name = if has_no_time && nanoseconds_beside(names, index).is_some() {
+            let by_name = if has_no_time && nanoseconds_beside(&plain, index).is_some() {
                 Some(chosen_as(Role::Time, index, name))
             } else {
                 named(index, name)
@@ -97,7 +98,7 @@ impl Header {
             }
         }
         let mut header = roles.header(choice)?;
-        if let Some(rest) = nanoseconds_beside(names, header.frame) {
+        if let Some(rest) = nanoseconds_beside(&plain, header.frame) {
             header.time = TimeColumn::Known(Some(TimeUnit::Seconds));
             header.nanoseconds = Some(rest);
             let [first, rest] = [header.frame, rest].map(|index| quoted(names[index]));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_core::Position;
+use ddl_core::{FRAME_LIMIT, Position};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -158,11 +158,6 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
     if track.prediction_number.is_some() {
         return Ok(None);
     }
-    let text = |value: Option<Value>, name: &'static str| match value {
-        None => Err(format!("{name} is missing")),
-        // As written in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
-        Some(value) => Ok(value.to_string()),
-    };
     let unit = match (&track.t, &track.f) {
         (Some(Value::String(_)), None) => Some(TimeUnit::Dates),
         (Some(_), None) => Some(TimeUnit::Seconds),
@@ -172,20 +167,12 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
     let when = match track.t {
         Some(Value::String(date)) => date,
         Some(time) => time.to_string(),
-        None => text(track.f, "track.f")?,
+        None => written(track.f, "track.f")?,
     };
     let frame = field::frame(&when, "track.f", unit)?;
-    let pedestrian = match track.p {
-        // A quoted pedestrian is a word, even if it holds only digits.
-        Some(Value::String(word)) if !word.trim().is_empty() => field::word(word.trim(), "track.p")?,
-        Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
-        other => {
-            let number = field::integer(&text(other, "track.p")?, "track.p")?;
-            PedestrianField::Number(number, None)
-        }
-    };
-    let x = field::coordinate(&text(track.x, "track.x")?, "track.x", 1.0)?;
-    let y = field::coordinate(&text(track.y, "track.y")?, "track.y", 1.0)?;
+    let pedestrian = pedestrian(track.p)?;
+    let x = field::coordinate(&written(track.x, "track.x")?, "track.x", 1.0)?;
+    let y = field::coordinate(&written(track.y, "track.y")?, "track.y", 1.0)?;
     let scene = match track.scene {
         None => None,
         Some(Value::String(name)) => Some(SceneName::new(&name).map_err(|error| error.to_string())?),
@@ -202,6 +189,27 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
         position: [x, y],
         place,
     }))
+}
+
+/// A value as in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
+fn written(value: Option<Value>, name: &str) -> Result<String, String> {
+    value.map_or_else(|| Err(format!("{name} is missing")), |value| Ok(value.to_string()))
+}
+
+fn pedestrian(value: Option<Value>) -> Result<PedestrianField, String> {
+    let is_large = |number: f64| number.abs() >= FRAME_LIMIT as f64;
+    match value {
+        // A quoted pedestrian is a word, even if it holds only digits.
+        Some(Value::String(word)) if !word.trim().is_empty() => field::word(word.trim(), "track.p"),
+        Some(Value::Number(number)) if number.is_f64() && number.as_f64().is_some_and(is_large) => Err(format!(
+            "track.p {number} has lost digits, as a number of JSON; write it as a text"
+        )),
+        Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p"),
+        other => {
+            let number = field::integer(&written(other, "track.p")?, "track.p")?;
+            Ok(PedestrianField::Number(number, None))
+        }
+    }
 }
 
 /// The fields of a part; `None` where it is missing or null.

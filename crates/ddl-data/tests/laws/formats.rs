@@ -245,7 +245,10 @@ fn columns_rows_and_units_can_be_chosen() {
             "there is no column \"west\"",
         ),
         (choice().keeping("colour=red").unwrap(), "there is no column \"colour\""),
-        (choice().in_unit("cm").unwrap().mapped(), "the homography maps pixels"),
+        (
+            ColumnChoice::given([Some(&choice().to_string()), None, Some("cm")], true).unwrap(),
+            "the homography maps pixels",
+        ),
     ] {
         let found = read(text, choice).unwrap_err();
         assert!(found.contains(problem), "{found}");

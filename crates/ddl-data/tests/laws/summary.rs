@@ -51,7 +51,7 @@ fn a_track_that_jumps_is_reported_with_its_frame() {
         observation.position[1] += 20.0;
     }
     let warnings = warnings(seen);
-    let [PlausibilityWarning::Jump(fastest)] = &warnings[..] else {
+    let [PlausibilityWarning::Jump { fastest, .. }] = &warnings[..] else {
         panic!("{warnings:?}");
     };
     assert_eq!((&fastest.pedestrian, fastest.frame), (&PedestrianId(1).into(), 40));

@@ -2,8 +2,8 @@
 
 use crate::tracks::timed::many_frames;
 use ddl_data::{
-    Clock, Completeness, Fastest, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality,
-    PedestrianId, PlausibilityWarning, Recording, Window,
+    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
+    PlausibilityWarning, Recording, Window,
 };
 use std::collections::BTreeSet;
 
@@ -158,11 +158,13 @@ pub fn steps_in_words(clock: Clock) -> String {
     }
 }
 
-/// The warning with frame numbers of the file.
+/// The warning with frame numbers or times of the file.
 pub fn in_frames(clock: Clock, mut warning: PlausibilityWarning) -> PlausibilityWarning {
     use PlausibilityWarning::{Jump, NoSteps};
-    if let Jump(Fastest { frame: tick, .. }) | NoSteps { frame_step: tick } = &mut warning {
-        *tick = clock.number(*tick).nearest();
+    match &mut warning {
+        Jump { fastest, when } => *when = clock.words(fastest.frame),
+        NoSteps { frame_step } => *frame_step = clock.number(*frame_step).nearest(),
+        _ => {}
     }
     warning
 }
