@@ -1,6 +1,6 @@
 //! Messages for users on standard error.
 
-use std::fmt::Arguments;
+use std::fmt::{Arguments, Display};
 use std::io::{Error, ErrorKind, Write as _, stderr};
 use std::time::Duration;
 
@@ -18,9 +18,10 @@ pub(crate) fn human(duration: Duration) -> String {
     }
 }
 
-/// A count with its noun.
-pub(crate) fn many(count: usize, one: &str, more: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { more })
+/// A count with its noun, whose plural has an s.
+pub(crate) fn many(count: impl Display + PartialEq + From<u8> + Copy, one: &str) -> String {
+    let ending = if count == 1.into() { "" } else { "s" };
+    format!("{count} {one}{ending}")
 }
 
 /// Whether a write failed because the reader has closed the output, as in `ddl info | head -1`.

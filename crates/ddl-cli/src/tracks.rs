@@ -99,8 +99,7 @@ pub(crate) fn tell_what_was_estimated(observed: &ObservedTracks) {
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
-    let is_right = (0.0..=LiveTracks::LONGEST_GAP).contains(&number);
-    let problem = || format!("must be a number from 0 to {}", LiveTracks::LONGEST_GAP);
-    is_right.then_some(number).ok_or_else(problem)
+    let longest = LiveTracks::LONGEST_GAP;
+    let number = text.parse().ok().filter(|number| (0.0..=longest).contains(number));
+    number.ok_or_else(|| format!("must be a number from 0 to {longest}"))
 }

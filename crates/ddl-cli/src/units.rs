@@ -106,17 +106,9 @@ impl Units {
         if self.topic.is_some() {
             bail!("only MCAP has topics; leave out --topic");
         }
-        let mut choice = self.columns.clone().unwrap_or_default();
-        if self.homography()?.is_some() {
-            choice = choice.mapped();
-        }
-        if let Some(text) = &self.keep {
-            choice = choice.keeping(text).map_err(anyhow::Error::msg)?;
-        }
-        match &self.unit {
-            Some(unit) => choice.in_unit(unit).map_err(anyhow::Error::msg),
-            None => Ok(choice),
-        }
+        let columns = self.columns.as_ref().map(ToString::to_string);
+        let given = [&columns, &self.keep, &self.unit].map(Option::as_deref);
+        ColumnChoice::given(given, self.homography()?.is_some()).map_err(anyhow::Error::msg)
     }
 
     /// The option that gives the rate, with its value.
@@ -255,8 +247,8 @@ impl Units {
 }
 
 fn positive(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
-    let is_right = number.is_finite() && number > 0.0;
-    let problem = || "must be a finite number above 0".to_owned();
-    is_right.then_some(number).ok_or_else(problem)
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+        _ => Err("must be a finite number above 0".to_owned()),
+    }
 }

@@ -166,9 +166,9 @@ impl std::fmt::Display for Total {
             f,
             "total: {} recordings, {}, {} in {} of 20 steps, {:.2} hours",
             self.recordings,
-            many(self.pedestrians, "pedestrian", "pedestrians"),
-            many(self.to_learn_from, "pedestrian-window", "pedestrian-windows"),
-            many(self.windows, "window", "windows"),
+            many(self.pedestrians, "pedestrian"),
+            many(self.to_learn_from, "pedestrian-window"),
+            many(self.windows, "window"),
             self.seconds / 3600.0
         )
     }
@@ -245,7 +245,6 @@ fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Cl
         format!("frames {first} to {last} ({} per step of 0.4 s)", clock.step_number())
     };
     let rows = rows_in_words(s);
-    let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
     writeln!(
         out,
         "\x20 observed     {}, {}\n\
@@ -256,18 +255,18 @@ fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Cl
          \x20 gaps         {}{gaps}\n\
          \x20 to forecast  {} of 8 steps, {} of them observed at all 8\n\
          \x20 to train     {} of 20 steps, in {}",
-        many(s.pedestrians, "pedestrian", "pedestrians"),
-        many(s.observations, "position", "positions"),
+        many(s.pedestrians, "pedestrian"),
+        many(s.observations, "position"),
         s.seconds,
         s.low[0],
         s.high[0],
         s.low[1],
         s.high[1],
         s.holes,
-        windows(s.to_forecast),
+        many(s.to_forecast, "pedestrian-window"),
         s.seen_whole,
-        windows(s.to_learn_from),
-        many(s.windows, "window", "windows"),
+        many(s.to_learn_from, "pedestrian-window"),
+        many(s.windows, "window"),
     )?;
     for doubt in doubts(s, recording, clock) {
         writeln!(out, "  doubtful     {doubt}")?;

@@ -4,7 +4,7 @@ use crate::command::benchmark::method::Method;
 use crate::command::benchmark::plan::{Plan, Settings, Training};
 use crate::command::benchmark::profile::Profile;
 use crate::command::recipe::Recipe;
-use crate::command::{ensure_no_files, folder};
+use crate::command::{at_least_one, ensure_no_files, folder};
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -46,13 +46,13 @@ pub(super) struct PlanOptions {
     #[arg(long, default_value = "cpu")]
     device: DeviceChoice,
     /// Pedestrians trained on in each epoch [default: the profile's, or else the recipe's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
     train_pedestrians: Option<usize>,
     /// Test pedestrians scored [default: the profile's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
     test_pedestrians: Option<usize>,
     /// Training epochs [default: the profile's]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
     epochs: Option<usize>,
 }
 

@@ -95,7 +95,6 @@ impl ProgramArguments {
 
 impl Plan {
     pub(crate) fn new(settings: Settings, folds: &[String], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Self> {
-        ensure!(settings.epochs > 0, "training needs at least one epoch");
         let mut tasks: Vec<Task> = Vec::new();
         // The tasks of the first method come first, because the others use the goals that they train.
         for &variant in methods {
@@ -183,38 +182,37 @@ impl Plan {
     /// # Errors
     /// When the file cannot be written, or `out` holds results of other settings; folds, variants and seeds may differ.
     pub(crate) fn write(&self, out: &Path) -> anyhow::Result<()> {
-        let file = out.join("plan.json");
-        match fs::read(&file) {
-            Ok(text) => {
-                let damaged = || format!("{} is damaged: delete it or choose another --out", file.display());
-                let PlanLayout { format } = serde_json::from_slice(&text).with_context(damaged)?;
-                ensure!(
-                    format == FORMAT,
-                    "{} holds results of another version of the benchmark (its plan has layout {format}, this version \
-                     writes {FORMAT}): choose another --out, or delete it",
-                    out.display()
-                );
-                let before: Self = serde_json::from_slice(&text).with_context(damaged)?;
-                self.check_same_settings(&before, out)?;
-            }
-            Err(error) if error.kind() == ErrorKind::NotFound => {}
-            Err(error) => {
-                return Err(error).with_context(|| format!("cannot read {}", file.display()));
-            }
+        if let Some(before) = Self::found(out)? {
+            self.check_same_settings(&before, out)?;
         }
+        let file = out.join("plan.json");
         let text = serde_json::to_vec_pretty(self)?;
         write_atomically(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }
 
     pub(crate) fn read(folder: &Path) -> anyhow::Result<Self> {
+        Self::found(folder)?.with_context(|| {
+            let folder = folder.display();
+            format!("cannot read {folder}/plan.json: --out must be a folder that `ddl benchmark` made")
+        })
+    }
+
+    /// The plan in a folder, if there is one.
+    fn found(folder: &Path) -> anyhow::Result<Option<Self>> {
         let file = folder.join("plan.json");
-        let text = fs::read(&file).with_context(|| {
-            format!(
-                "cannot read {}: --out must be a folder that `ddl benchmark` made",
-                file.display()
-            )
-        })?;
-        serde_json::from_slice(&text).with_context(|| format!("{} is damaged", file.display()))
+        let text = match fs::read(&file) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            text => text.with_context(|| format!("cannot read {}", file.display()))?,
+        };
+        let damaged = || format!("{} is damaged: delete it or choose another --out", file.display());
+        let PlanLayout { format } = serde_json::from_slice(&text).with_context(damaged)?;
+        ensure!(
+            format == FORMAT,
+            "{} holds results of another version of the benchmark (its plan has layout {format}, this version writes \
+             {FORMAT}): choose another --out, or delete it",
+            folder.display()
+        );
+        Ok(Some(serde_json::from_slice(&text).with_context(damaged)?))
     }
 
     fn check_same_settings(&self, before: &Self, out: &Path) -> anyhow::Result<()> {

@@ -80,12 +80,8 @@ impl MemoryOfFile {
             "{} of at most {} segments, of {}; {} seen in {}",
             summary.segments,
             self.memory.capacity(),
-            many(summary.tracks, "track", "tracks"),
-            many(
-                usize::try_from(summary.pedestrians).unwrap_or(usize::MAX),
-                "pedestrian",
-                "pedestrians"
-            ),
+            many(summary.tracks, "track"),
+            many(summary.pedestrians, "pedestrian"),
             duration(summary.seconds),
         )
     }

@@ -6,7 +6,6 @@ use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::moment::{SceneWindows, StreamState};
 use crate::command::forecast::stream::{Answer, StreamOptions, text_of};
-use crate::command::forecast::told_once::ToldOnce;
 use crate::interrupt::Interrupt;
 use crate::output::file_of;
 use crate::telling::{tell, words};
@@ -83,7 +82,7 @@ fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) ->
         left_out: LeftOut::default(),
         is_empty: true,
         first_rows: FirstRows::default(),
-        told: ToldOnce::default(),
+        observed: 0,
         taken: 0,
         answered: 0,
     };
@@ -195,7 +194,8 @@ struct Stream<'a> {
     left_out: LeftOut,
     is_empty: bool,
     first_rows: FirstRows,
-    told: ToldOnce,
+    /// Number of frames of tracks.
+    observed: u64,
     /// Number of frames read since the last batch.
     taken: usize,
     /// Number of frames whose forecasts were written.
@@ -253,7 +253,7 @@ impl Stream<'_> {
         {
             memory.ensure_fits(frame.scene.as_ref())?;
         }
-        self.told.of_rate(units, stated);
+        self.state.tell_other_rate(units, stated);
         self.taken += 1;
         if self.clock.is_none() {
             let mut early = self.early.iter();
@@ -316,7 +316,9 @@ impl Stream<'_> {
                 let name = names.of(misfit.pedestrian);
                 format!("pedestrian {name}{place} at {}", tracks.clock().words(misfit.tick))
             });
-            self.told.of_tracks(tracks, self.forecast.tracks.are_thinned());
+            self.observed += 1;
+            self.state
+                .tell_doubts(tracks, self.observed, self.forecast.tracks.are_thinned());
             let is_idle = watching.scenes.as_ref().is_some_and(|scenes| scenes.waiting() == 0);
             if is_idle && !self.forecast.latest && !self.forecast.tracks.are_thinned() {
                 self.left_out.tell_if_few(MANY_ROWS, SEVERAL_FRAMES);

@@ -54,7 +54,6 @@ impl<'a> SceneWindows<'a> {
 pub(crate) struct StreamState {
     pub(crate) headed: bool,
     pub(crate) unfamiliar: UnfamiliarMotions,
-    is_violation_told: bool,
     told: BTreeSet<&'static str>,
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }
@@ -89,20 +88,19 @@ impl StreamState {
 /// Stable steps keep the guarantee for any output of the network. If one violates it, a user who relies on the
 /// forecasts must know.
 pub(super) fn warn_of_violation(moments: &[Moment<'_>], state: &mut StreamState) {
-    if state.is_violation_told {
-        return;
-    }
     let first = moments.iter().find_map(|moment| {
         let (i, hypothesis, violation) = moment.certified?.first_violation()?;
         Some((moment, i, hypothesis, violation))
     });
     if let Some((moment, i, hypothesis, violation)) = first {
-        state.is_violation_told = true;
-        tell(format_args!(
-            "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
-             observed until {}, hypothesis {hypothesis}: {violation}",
-            moment.who(i),
-            moment.when(),
-        ));
+        state.tell_once(
+            "violation",
+            format_args!(
+                "warning: not every certificate holds; the first that does not is that of pedestrian {}, observed \
+                 until {}, hypothesis {hypothesis}: {violation}",
+                moment.who(i),
+                moment.when(),
+            ),
+        );
     }
 }

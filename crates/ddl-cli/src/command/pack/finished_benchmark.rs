@@ -101,7 +101,8 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
             full()
                 .find(|task| task.fold == fold && Some(task.seed) == seed)
                 .with_context(|| {
-                    format!("the benchmark has no run of fold {fold}, variant full; run it with all folds")
+                    let seed = seed.map_or(String::new(), |seed| format!(", seed {seed}"));
+                    format!("the benchmark has no run of fold {fold}, variant full{seed}; run it with all folds")
                 })
         })
         .collect()
