@@ -29,7 +29,7 @@ const NAMES: [(Role, &str); 13] = [
     ),
     (
         Role::Time,
-        "time zeit t timestamp stamp headerstamp seconds milliseconds microseconds nanoseconds datetime",
+        "time zeit t ts timestamp stamp headerstamp seconds milliseconds microseconds nanoseconds datetime",
     ),
     (
         Role::Pedestrian,
@@ -39,12 +39,12 @@ const NAMES: [(Role, &str); 13] = [
     (
         Role::X,
         "x posx posex posepositionx poseposepositionx xpos positionx xposition centerx xcenter centrex xcentre \
-         worldx xworld px xest coordx xcoord locx xloc",
+         worldx xworld px xest coordx xcoord locx xloc easting",
     ),
     (
         Role::Y,
         "y posy posey posepositiony poseposepositiony ypos positiony yposition centery ycenter centrey ycentre \
-         worldy yworld py yest coordy ycoord locy yloc",
+         worldy yworld py yest coordy ycoord locy yloc northing",
     ),
     (Role::Class, "class classname label type agenttype objecttype category"),
     (Role::Scene, "scene"),
