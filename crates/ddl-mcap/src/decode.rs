@@ -64,15 +64,19 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
         let name = item
             .pointer(name)
             .filter(|name| name.is_number() || name.as_str().is_some_and(|it| !it.is_empty()));
+        let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let class = |result: &Value| {
+            result
+                .pointer("/hypothesis/class_id")
+                .filter(|class| !class.is_null())
+                .map(text)
+        };
         let score = |result: &&Value| result["hypothesis"]["score"].as_f64().unwrap_or(0.0);
         let results = item["results"].as_array().into_iter().flatten();
         let likeliest = results.max_by(|a, b| score(a).total_cmp(&score(b)));
         Some(SeenPedestrian {
-            name: name.map(|name| name.as_str().map_or_else(|| name.to_string(), str::to_owned))?,
-            class: likeliest
-                .and_then(|it| it["hypothesis"]["class_id"].as_str())
-                .unwrap_or_default()
-                .to_owned(),
+            name: name.map(text)?,
+            class: likeliest.and_then(class).unwrap_or_default(),
             position: Point::from([coordinate("x")?, coordinate("y")?]),
             frame_id: frame_id(item),
             is_occluded,
@@ -82,8 +86,8 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
     let pedestrians = seen.collect::<Option<_>>().ok_or(missing)?;
     let stamp = &message["header"]["stamp"];
     // As ROS 2, Foxglove and ROS 1 call them.
-    let part = |names: &[&str]| names.iter().find_map(|name| stamp[name].as_i64()).unwrap_or(0);
-    let (seconds, nanoseconds) = (part(&["sec", "secs"]), part(&["nanosec", "nsec", "nsecs"]));
+    let seconds = part_of(stamp, &["sec", "secs"])?;
+    let nanoseconds = part_of(stamp, &["nanosec", "nsec", "nsecs"])?;
     let microseconds = seconds.saturating_mul(1_000_000).saturating_add(nanoseconds / 1000);
     let header = Header {
         stamp: Time::of_microseconds(microseconds),
@@ -91,6 +95,17 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
     };
     let time = (microseconds != 0).then_some(microseconds);
     Ok((time, Observed::new(header, pedestrians)))
+}
+
+/// The whole number with one of these names, which may be a text as protobuf writes it; 0 without any.
+fn part_of(stamp: &Value, names: &[&str]) -> Result<i64, String> {
+    let Some((name, value)) = names.iter().find_map(|name| Some((name, stamp.get(name)?))) else {
+        return Ok(0);
+    };
+    let of_text = value.as_str().and_then(|text| text.parse().ok());
+    let of_float = value.as_f64().filter(|number| number.fract() == 0.0);
+    let number = value.as_i64().or(of_text).or(of_float.map(|number| number as i64));
+    number.ok_or_else(|| format!("header.stamp.{name} is {value}; it must be a whole number"))
 }
 
 /// JSON as `ddl forecast -` reads it, one or several lines of a moment. A frame is no time.

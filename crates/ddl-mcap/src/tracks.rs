@@ -74,7 +74,12 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
         }
     }
     let (name, topic) = choose(topics, asked).map_err(LogError::at(path.display()))?;
-    notes.insert(0, topic.words(&name));
+    let words = topic.words(&name);
+    if topic.rows.is_empty() {
+        let problem = format!("{words}; no row is left, and --keep class=NAME chooses another class");
+        return Err(LogError::at(path.display())(problem));
+    }
+    notes.insert(0, words);
     let recording = topic
         .recording()
         .map_err(LogError::at(format!("{}, topic {name}", path.display())))?;

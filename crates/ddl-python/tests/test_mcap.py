@@ -2,6 +2,7 @@
 
 import csv
 import io
+import json
 import math
 import shutil
 from pathlib import Path
@@ -186,6 +187,44 @@ def test_what_cannot_be_read_is_named(program, folder, tmp_path):
     for option in [["--certificate"], ["--region", "0.9"]]:
         assert words in error("forecast", folder / "ZSTD.mcap", *option, "-o", tmp_path / "x.mcap")
     shutil.rmtree(tmp_path)
+
+
+def json_log(file, kind, message):
+    with file.open("wb") as to:
+        writer = Writer(to)
+        writer.start()
+        topic = writer.register_channel("/seen", "json", writer.register_schema(kind, "jsonschema", b"{}"))
+        for k in range(24):
+            second, nanosecond = divmod(100_050_000_000 + 137_000_000 * k, 10**9)
+            writer.add_message(topic, 1, json.dumps(message(k, second, nanosecond)).encode(), 1)
+        writer.finish()
+
+
+def test_whole_numbers_of_json_have_any_type(program, tmp_path):
+    def people(of):
+        def message(k, second, nanosecond):
+            header = {"frame_id": "map", "stamp": {"sec": of(second), "nanosec": of(nanosecond)}}
+            return {"header": header, "people": [{"name": "1", "position": {"x": 0.16 * k, "y": 0}}]}
+
+        return message
+
+    for of in (int, float, str):
+        json_log(tmp_path / "log.mcap", PEOPLE, people(of))
+        told = run(program, "data", tmp_path / "log.mcap", check=True).stdout
+        assert "100.05 s to 103.201 s" in told, told
+    json_log(tmp_path / "log.mcap", PEOPLE, people(lambda number: number + 0.5))
+    assert "header.stamp.sec is 100.5; it must be" in run(program, "data", tmp_path / "log.mcap").stderr
+
+    def detections(k, second, nanosecond):
+        result = {"hypothesis": {"class_id": 7, "score": 0.9}}
+        place = {"center": {"position": {"x": 0.16 * k, "y": 0}}}
+        header = {"frame_id": "map", "stamp": {"sec": second, "nanosec": nanosecond}}
+        return {"header": header, "detections": [{"id": "1", "bbox": place, "results": [result]}]}
+
+    json_log(tmp_path / "log.mcap", "vision_msgs/msg/Detection3DArray", detections)
+    assert "classes read 7" in run(program, "data", tmp_path / "log.mcap", "--keep", "class=7", check=True).stderr
+    none = run(program, "data", tmp_path / "log.mcap", "--keep", "class=person").stderr
+    assert "24 rows left out: class 7; no row is left" in none
 
 
 def test_a_csv_is_written_as_mcap_too(program, folder):
