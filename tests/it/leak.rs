@@ -5,8 +5,8 @@ use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Win
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEndpoint};
 use ddl::eval::leak;
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
-use ddl::{Ddl, Forecast, ForecastError, Forecaster, Protocol, Remembering, Variant, WeightedGoals};
-use ddl_tests::one_forecast::One;
+use ddl::{Ddl, ForecastError, Forecaster, Protocol, Remembering, Variant, WeightedGoals};
+use ddl_tests::made::Made;
 use ddl_tests::{bits, crowd, drawn_model};
 
 /// The window with each position after the observation replaced by `f(pedestrian, frame, position)`, with frames
@@ -108,51 +108,23 @@ fn baselines_never_see_the_future() {
     never_sees_the_future(&StraightLine(goals));
 }
 
-/// The futures of whole scenes.
-struct Scenes<'a>(&'a Ddl);
-
-impl Forecaster for Scenes<'_> {
-    fn name(&self) -> String {
-        "DDL, whole scenes".to_owned()
-    }
-
-    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        Ok(self.forecast_all(std::slice::from_ref(window))?.remove(0))
-    }
-
-    fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        self.0.forecast_scenes(windows, None)
-    }
-}
-
 #[test]
 fn no_variant_of_the_model_sees_the_future() {
     for variant in Variant::ALL {
         let model = drawn_model::of(variant);
         never_sees_the_future(&model);
-        never_sees_the_future(&One(&model));
-        never_sees_the_future(&Scenes(&model));
-    }
-}
-
-/// Uses the published goals if there is a future, and other goals otherwise. Only its forecasts reveal this.
-struct PublishedWhenItCan([StraightLine<EstimatedGoals>; 2]);
-
-impl Forecaster for PublishedWhenItCan {
-    fn name(&self) -> String {
-        "published goals when it can".to_owned()
-    }
-
-    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        let [published, fair] = &self.0;
-        if window.has_future() { published } else { fair }.forecast(window)
+        never_sees_the_future(&Made(|windows: &[Window]| model.forecast_central(windows)));
+        never_sees_the_future(&Made(|windows: &[Window]| model.forecast_scenes(windows, None)));
     }
 }
 
 #[test]
 fn forecasters_that_read_the_future_are_detected() {
     let params = [GoalEstimatorParams::published(), GoalEstimatorParams::default()];
-    let forecaster = PublishedWhenItCan(params.map(|params| StraightLine(EstimatedGoals::with(params))));
+    let [published, fair] = params.map(|params| StraightLine(EstimatedGoals::with(params)));
+    // Only its forecasts reveal that it uses the published goals if there is a future.
+    let of_window = |window: &Window| if window.has_future() { &published } else { &fair }.forecast(window);
+    let forecaster = Made(|windows: &[Window]| windows.iter().map(of_window).collect());
     let window = &crowd::windows(1, 4)[0];
     assert!(leak::find(&forecaster, window).unwrap().is_some());
 }

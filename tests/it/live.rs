@@ -2,8 +2,9 @@
 //! windows of the whole recording.
 
 use ddl::data::{LiveTracks, Observation, PedestrianId, Recording, Window};
-use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
-use ddl_tests::failing_model::FailingModel;
+use ddl::eval::baseline::ConstantVelocity;
+use ddl::{DdlError, ForecastError, Forecaster as _, LiveForecaster, Variant};
+use ddl_tests::made::Made;
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json, json_lines};
 use ddl_tests::program::Finished;
@@ -56,7 +57,14 @@ fn an_error_changes_nothing() {
     let frames = own_tracks::frames(&rows);
     let pedestrians = |frame: i64| frames[&frame].clone();
     let fails = Cell::new(false);
-    let model = FailingModel(|_: &Window| fails.get());
+    let model = Made(|windows: &[Window]| {
+        let failed = || Err(ForecastError::model("made", "on demand"));
+        if fails.get() {
+            failed()
+        } else {
+            ConstantVelocity::LastStep.forecast_all(windows)
+        }
+    });
     let mut live = LiveForecaster::with_tracks(&model, tracks());
     live.push(0, pedestrians(0)).unwrap();
     for frame in (10..90).step_by(10) {

@@ -1,7 +1,7 @@
 //! Adaptive regions of the program on a real recording.
 
 use ddl::data::{Convention, Dataset, PedestrianId, Recording};
-use ddl_tests::own_tracks::{self, Row};
+use ddl_tests::own_tracks;
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::recordings;
 use serde::Deserialize;
@@ -21,17 +21,6 @@ struct Line {
 struct Region {
     probability: f64,
     discs: Vec<Vec<[f64; 3]>>,
-}
-
-fn rows(recording: &Recording, frames: usize) -> Vec<Row> {
-    let end = recording.frames()[frames];
-    let seen = recording.observations().iter();
-    seen.filter(|seen| seen.frame < end)
-        .map(|seen| {
-            let [x, y] = seen.position;
-            (seen.frame, seen.pedestrian.0, x, y)
-        })
-        .collect()
 }
 
 /// Share of the later positions that are inside the regions of a line, for lines from that frame on.
@@ -62,7 +51,8 @@ fn the_regions_reach_their_probability_without_future_data() {
     let dataset = Dataset::load(Convention::Star, &folder).unwrap();
     let recording = dataset.recording("hotel").unwrap();
     let place = Place::empty();
-    let (rows_of_all, rows_of_half) = (rows(recording, FRAMES), rows(recording, FRAMES / 2));
+    let rows = |frames: usize| own_tracks::of_recording(recording, i64::MIN..recording.frames()[frames]);
+    let (rows_of_all, rows_of_half) = (rows(FRAMES), rows(FRAMES / 2));
     place.write_tracks("all.csv", &rows_of_all);
     place.write_tracks("half.csv", &rows_of_half);
     let options = "--model hotel --whole --frame-step 10 --region 0.9 --format jsonl --threads 1";

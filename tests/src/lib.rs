@@ -8,16 +8,15 @@ pub mod chance;
 pub mod console;
 pub mod crowd;
 pub mod drawn_model;
-pub mod failing_model;
 pub mod folder_contents;
 pub mod golden;
 pub mod guide;
+pub mod made;
 #[cfg(unix)]
 pub mod mount;
 pub mod nightly;
 #[cfg(unix)]
 pub mod offline;
-pub mod one_forecast;
 pub mod outside_bytes;
 pub mod own_tracks;
 pub mod place;

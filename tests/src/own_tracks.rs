@@ -1,7 +1,7 @@
 //! Tracks like those of a user of the program, as CSV.
 
 use crate::crowd;
-use ddl_data::{PedestrianId, Position};
+use ddl_data::{PedestrianId, Position, Recording};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -49,6 +49,11 @@ pub fn csv(rows: &[Row]) -> String {
 /// A part of a simulated crowd, as a recording of a user.
 pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
     let recording = crowd::dataset().recording(scene).expect("the simulated scene exists");
+    of_recording(recording, frames)
+}
+
+/// The rows of these frames.
+pub fn of_recording(recording: &Recording, frames: std::ops::Range<i64>) -> Vec<Row> {
     let seen = recording.observations().iter();
     seen.filter(|seen| frames.contains(&seen.frame))
         .map(|seen| {

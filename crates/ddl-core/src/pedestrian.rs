@@ -69,11 +69,11 @@ impl PedestrianNames {
         Self((!words.is_empty()).then(|| Arc::new(words)))
     }
 
-    /// These names and newer ones, of the pedestrians that are kept.
+    /// The names of the pedestrians that are kept, and newer ones.
     #[must_use]
-    pub fn updated(&self, newer: &Self, mut is_kept: impl FnMut(PedestrianId) -> bool) -> Self {
-        let maps = [self, newer].into_iter().filter_map(|names| names.0.as_deref());
-        let words = maps.flatten().filter(|(id, _)| is_kept(**id));
+    pub fn updated(&self, newer: &Self, is_kept: impl Fn(PedestrianId) -> bool) -> Self {
+        let [older, newer] = [self, newer].map(|names| names.0.as_deref().into_iter().flatten());
+        let words = older.filter(|(id, _)| is_kept(**id)).chain(newer);
         Self::new(words.map(|(id, word)| (*id, Arc::clone(word))).collect())
     }
 

@@ -213,7 +213,7 @@ impl LiveTracks {
         self.misfits.clear();
     }
 
-    /// Adds names of pedestrians; those of forgotten pedestrians go.
+    /// Adds names of pedestrians, also of those in the next frame; those of forgotten pedestrians go.
     pub fn name(&mut self, names: &PedestrianNames) {
         self.names = self.names.updated(names, |id| self.pedestrians.contains_key(&id));
     }

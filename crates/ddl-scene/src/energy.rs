@@ -70,6 +70,8 @@ static LEARNED: LazyLock<Option<Energy>> = LazyLock::new(|| serde_json::from_str
 pub(crate) struct PairEnergy {
     /// Distance (m) that counts as 1 in `conflict`.
     pub(crate) near: f32,
+    /// From this distance (m) on distances count: the radius of who follows a plan.
+    pub(crate) radius: f32,
     conflict: [f32; 5],
     /// Strength and scale of walking together.
     together: Option<(f32, f32)>,
@@ -128,11 +130,13 @@ impl Energy {
         }
     }
 
-    /// The energy of a pair at this present distance (m), whose [strength](Self::strength) is divided among partners.
-    pub(crate) fn of_pair(&self, present_distance: f64, strength: f32, partners: f32) -> PairEnergy {
-        let near = self.conflict.near.min(present_distance);
+    /// The energy of a pair at this present distance and radius (m), whose [strength](Self::strength) is divided among
+    /// partners.
+    pub(crate) fn of_pair(&self, [present_distance, radius]: [f64; 2], strength: f32, partners: f32) -> PairEnergy {
+        let near = self.conflict.near.min(present_distance - radius);
         PairEnergy {
             near: (near as f32).max(0.1),
+            radius: radius as f32,
             conflict: if strength > 0.0 {
                 self.conflict.together
             } else {
@@ -146,12 +150,12 @@ impl Energy {
 impl PairEnergy {
     /// Distance (m) from which paths have no conflict.
     pub(crate) fn reach(&self) -> f32 {
-        2.5 * self.near
+        2.5 * self.near + self.radius
     }
 
     /// The energy of paths that come this close (m).
     pub(crate) fn conflict(&self, distance: f32) -> f32 {
-        let at = 2.0 * distance / self.near;
+        let at = 2.0 * (distance - self.radius).max(0.0) / self.near;
         let knot = at as usize;
         let energy = |knot: usize| self.conflict.get(knot).copied().unwrap_or(0.0);
         let share = at - at.floor();

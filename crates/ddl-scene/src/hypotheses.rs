@@ -14,6 +14,8 @@ pub(crate) struct Hypotheses {
     paths: [Vec<f32>; 2],
     /// Largest distance from the present position, metres.
     pub(crate) reach: f64,
+    /// Distances are measured from this far around the position, metres; 0 for a pedestrian.
+    pub(crate) radius: f64,
 }
 
 impl Hypotheses {
@@ -25,9 +27,12 @@ impl Hypotheses {
         Self::new(present, weights, |k| forecast.hypothesis(i, k))
     }
 
-    /// One certain path, as of a plan: 12 positions (m).
-    pub(crate) fn certain(present: Position, path: &[Position; HORIZON]) -> Self {
-        Self::new(present, vec![1.0], |_| path)
+    /// One certain path, as of a plan: 12 positions, and the radius of who follows it (m).
+    pub(crate) fn certain(present: Position, path: &[Position; HORIZON], radius: f64) -> Self {
+        Self {
+            radius,
+            ..Self::new(present, vec![1.0], |_| path)
+        }
     }
 
     fn new<'a>(present: Position, weights: Vec<f32>, path: impl Fn(usize) -> &'a [Position]) -> Self {
@@ -51,6 +56,7 @@ impl Hypotheses {
             weights,
             paths,
             reach,
+            radius: 0.0,
         }
     }
 

@@ -27,7 +27,7 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
     let means: Vec<Path> = means.collect();
     let mut paths = means.clone();
     let collide = |pair: &Pair, first: &Path, second: &Path| {
-        apart_squared(people, pair, first, second) < (MARGIN * pair.energy.near).powi(2)
+        apart_squared(people, pair, first, second) < (MARGIN * pair.energy.near + pair.energy.radius).powi(2)
     };
     let mut partners = None;
     for _ in 0..ROUNDS {

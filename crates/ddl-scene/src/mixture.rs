@@ -6,7 +6,7 @@ use crate::keeping_apart::keep_apart;
 use crate::pairs::{Pair, pairs_of};
 use crate::plan::Plan;
 use crate::{quantisation, sampling};
-use ddl_core::{Forecast, HORIZON, Position, Spread, TIME_STEP, Window};
+use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianName, Position, Spread, TIME_STEP, Window};
 
 /// Samples of a scene.
 const SAMPLES: usize = 300;
@@ -97,7 +97,23 @@ impl JointMixture {
     }
 }
 
-/// The pedestrians in the order of their ids, which does not depend on the order of the window, and then who follows
+/// The number of a pedestrian, or its word: the number that stands for a word depends on who came before.
+fn name(window: &Window, i: usize) -> PedestrianName {
+    let id = window.pedestrians()[i];
+    if id.0 < FRAME_LIMIT { id.into() } else { window.name(i) }
+}
+
+/// The number, or the FNV-1a hash of the word.
+fn seed(name: &PedestrianName) -> u64 {
+    match name {
+        PedestrianName::Number(number) => number.cast_unsigned(),
+        PedestrianName::Word(word) => word.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+        }),
+    }
+}
+
+/// The pedestrians in the order of their names, which does not depend on the order of the window, and then who follows
 /// the plan.
 struct Scene {
     people: Vec<Hypotheses>,
@@ -109,18 +125,19 @@ struct Scene {
 
 impl Scene {
     fn new(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
-        let ids = window.pedestrians();
+        let names: Vec<PedestrianName> = (0..window.len()).map(|i| name(window, i)).collect();
         let mut order: Vec<usize> = (0..window.len()).collect();
-        order.sort_unstable_by_key(|&i| ids[i]);
+        order.sort_unstable_by(|&i, &j| names[i].cmp(&names[j]));
         let mut people: Vec<Hypotheses> = order.iter().map(|&i| Hypotheses::of(window, forecast, i)).collect();
-        let mut seeds: Vec<u64> = order.iter().map(|&i| ids[i].0.cast_unsigned()).collect();
+        let mut seeds: Vec<u64> = order.iter().map(|&i| seed(&names[i])).collect();
         let mut tracks: Vec<Option<&[Position]>> = order.iter().map(|&i| Some(window.observed(i))).collect();
         if let Some(plan) = plan {
             let path = std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position);
+            let radius = plan.points().iter().map(|point| point.radius).fold(0.0, f64::max);
             if let Some(ego) = ego.and_then(|ego| order.iter().position(|&i| i == ego)) {
-                people[ego] = Hypotheses::certain(people[ego].present, &path);
+                people[ego] = Hypotheses::certain(people[ego].present, &path, radius);
             } else {
-                people.push(Hypotheses::certain(plan.at(0.0).position, &path));
+                people.push(Hypotheses::certain(plan.at(0.0).position, &path, radius));
                 seeds.push(0);
                 tracks.push(None);
             }

@@ -46,7 +46,8 @@ pub(crate) fn pairs_of(energy: &Energy, people: &[Hypotheses], tracks: &[Option<
     pairs
         .filter_map(|((i, j), strength)| {
             let apart = distance(people[i].present, people[j].present);
-            let pair = energy.of_pair(apart, strength, partners[i].max(partners[j]));
+            let radius = people[i].radius + people[j].radius;
+            let pair = energy.of_pair([apart, radius], strength, partners[i].max(partners[j]));
             let energies = table(&pair, &people[i], &people[j])?;
             Some(Pair {
                 first: i,
@@ -76,7 +77,7 @@ fn near_pairs(energy: &Energy, people: &[Hypotheses]) -> BTreeSet<(usize, usize)
     for (i, one) in people.iter().enumerate() {
         for j in index.nearest_others(i, one.present, MOST_NEIGHBOURS) {
             let apart = distance(one.present, people[j].present);
-            let meet = one.reach + people[j].reach + energy.reach();
+            let meet = one.reach + people[j].reach + one.radius + people[j].radius + energy.reach();
             if apart < meet.max(energy.together_within()) {
                 pairs.insert((i.min(j), i.max(j)));
             }

@@ -1,7 +1,7 @@
 //! Laws of joint futures.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_core::{Forecast, HORIZON, PedestrianId, Position, Window, between, distance};
+use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianId, PedestrianNames, Position, Window, between, distance};
 use ddl_scene::{JointMixture, Plan, PlanPoint, groups};
 use proptest::{collection::vec, prelude::*};
 
@@ -103,6 +103,16 @@ proptest! {
         let (one, mut other) = (JointMixture::of(&a, &b, None, None), JointMixture::of(&c, &d, None, None));
         other.shares.rotate_right(turn * K * K);
         prop_assert_eq!(one, other);
+        // Words get their numbers by arrival.
+        let of_words = |people: &[Person], words: &[i64]| {
+            let (window, forecast) = scene(people, &(FRAME_LIMIT..).take(people.len()).collect::<Vec<_>>());
+            let named = window.pedestrians().iter().zip(words);
+            let names = named.map(|(id, word)| (*id, format!("p{word}").into())).collect();
+            JointMixture::of(&window.with_names(PedestrianNames::new(names)), &forecast, None, None)
+        };
+        let (one, mut other) = (of_words(&people, &ids), of_words(&others, &other_ids));
+        other.shares.rotate_right(turn * K * K);
+        prop_assert_eq!(one, other);
     }
 
     /// Quarter turns and whole metres are exact for positions on a grid of 1/1024 m, so no bit may change.
@@ -169,6 +179,10 @@ proptest! {
         let (window, forecast) = scene(&[([0.0, 0.0], 0.0, 1.2)], &[1]);
         let mixture = JointMixture::of(&window, &forecast, Some(&standing([x, 0.0])), None);
         prop_assert!(marginal(&mixture, 0)[0] < 0.1, "{:?}", marginal(&mixture, 0));
+        // A metre around a position aside keeps as far away as a position in the way.
+        let wide = |radius| Plan::new(vec![PlanPoint { time: 0.0, position: [x, 1.4], radius }]).unwrap();
+        let straight = |radius| marginal(&JointMixture::of(&window, &forecast, Some(&wide(radius)), None), 0)[0];
+        prop_assert!(straight(1.4) < 0.5 * straight(0.0), "{} {}", straight(1.4), straight(0.0));
     }
 }
 

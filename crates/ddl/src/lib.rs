@@ -62,7 +62,7 @@ pub use goals::remembering::Remembering;
 pub use live::forecaster::{LiveForecast, LiveForecaster};
 pub use live::memory_file::MemoryFile;
 pub use live::place_memory::PlaceMemory;
-pub use live::scenes::{LiveScenes, SceneBatch, SceneForecast};
+pub use live::scenes::{LiveScenes, SceneBatch};
 pub use model::ddl::Ddl;
 pub use run::builtin_model::BuiltinModel;
 pub use run::config::{FORMAT, RunConfig, TrainingData};
@@ -85,7 +85,7 @@ pub use trust::calibration::region_table;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
 #[cfg(any(feature = "report", feature = "torch"))]
-pub use windows::{split::Split, test_set::test_set_name};
+pub use windows::test_set::{Split, test_set_name};
 
 /// What the feature `report` adds.
 #[cfg(feature = "report")]

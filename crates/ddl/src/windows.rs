@@ -1,4 +1,3 @@
 //! The windows that a model is evaluated or validated on.
 
-pub(crate) mod split;
 pub(crate) mod test_set;

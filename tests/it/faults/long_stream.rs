@@ -1,10 +1,10 @@
 //! A day of live tracks: memory and time per frame stay constant. Measured in a separate process, because the other
 //! tests of this program use memory as well.
 
-use ddl::data::{PedestrianId, Position};
+use ddl::data::{PedestrianId, Position, Window};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster, LiveForecaster};
-use ddl_tests::one_forecast::One;
+use ddl_tests::made::Made;
 use ddl_tests::{nightly, processes};
 use std::time::Instant;
 
@@ -68,7 +68,7 @@ fn a_day_of_forecasts_needs_constant_memory() {
         || {
             ddl::prepare(DeviceChoice::Cpu, Some(1)).unwrap();
             let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
-            stream(One(&model), size)
+            stream(Made(|windows: &[Window]| model.forecast_central(windows)), size)
         },
     );
 }

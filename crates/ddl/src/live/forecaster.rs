@@ -7,7 +7,7 @@ use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
 use crate::model::ddl::Ddl;
 use ddl_core::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
-use ddl_data::{LiveTracks, PedestrianId, Position, Window};
+use ddl_data::{LiveTracks, PedestrianId, PedestrianNames, Position, Window};
 use ddl_memory::SceneMemory;
 use std::borrow::Borrow;
 
@@ -103,6 +103,11 @@ impl<M> LiveForecaster<M> {
         if let Some(regions) = &mut self.regions {
             regions.clear();
         }
+    }
+
+    /// Gives names to pedestrians of the next frame: their windows have them.
+    pub fn name(&mut self, names: &PedestrianNames) {
+        self.watch.tracks.name(names);
     }
 
     /// The memory of the place, for its [memory file](crate::MemoryFile); `None` unless

@@ -4,7 +4,6 @@ use crate::error::DdlError;
 use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
 use crate::model::ddl::Ddl;
-use ddl_core::{Forecast, ForecastError, Forecaster};
 use ddl_data::{Frame, LiveError, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
 use ddl_memory::SceneMemory;
 use std::collections::{BTreeMap, VecDeque};
@@ -30,7 +29,7 @@ use std::time::{Duration, Instant};
 /// # Examples
 /// ```
 /// use ddl::data::{LiveTracks, PedestrianId, SceneName};
-/// use ddl::{BuiltinModel, Ddl, DeviceChoice, LiveScenes};
+/// use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, LiveScenes};
 ///
 /// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
 /// let [hall, yard] = ["hall", "yard"].map(|name| SceneName::new(name).expect("a short name"));
@@ -40,10 +39,10 @@ use std::time::{Duration, Instant};
 ///     scenes.observe(Some(&hall), frame, [(PedestrianId(1), [x, 0.0])])?;
 ///     scenes.observe(Some(&yard), 100 + frame, [(PedestrianId(1), [0.0, x])])?;
 /// }
-/// let answers = scenes.forecast(&model, 100);
-/// assert_eq!(answers.len(), 2);
-/// assert_eq!(answers[1].scene.as_ref(), Some(&yard));
-/// assert!(answers[1].forecast.as_ref().expect("a forecast").hypothesis(0, 0)[11][1] > 3.5);
+/// let batch = scenes.next_batch(100);
+/// let forecasts = model.forecast_all(&batch.windows)?;
+/// assert_eq!(batch.scenes[1].as_ref(), Some(&yard));
+/// assert!(forecasts[1].hypothesis(0, 0)[11][1] > 3.5);
 /// # Ok::<(), ddl::DdlError>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -73,18 +72,6 @@ pub struct SceneBatch {
     pub scenes: Vec<Option<SceneName>>,
     /// The windows, in the order of `scenes`.
     pub windows: Vec<Window>,
-}
-
-/// The forecast at a frame of a scene.
-#[derive(Debug)]
-#[non_exhaustive]
-pub struct SceneForecast {
-    /// The scene; `None` for a stream without scene names.
-    pub scene: Option<SceneName>,
-    /// The pedestrians, in the order of the forecast, with their last 8 positions.
-    pub window: Window,
-    /// The forecast, or its error. An error of one scene does not affect the other scenes.
-    pub forecast: Result<Forecast, ForecastError>,
 }
 
 impl LiveScenes {
@@ -178,6 +165,7 @@ impl LiveScenes {
         }
         let is_new = !self.scenes.contains_key(&name);
         let scene = self.scene(&name)?;
+        scene.watch.tracks.name(names);
         let made = match scene.watch.push(frame, pedestrians, |_| Ok::<_, DdlError>(())) {
             Ok(made) => made,
             Err(error) => {
@@ -189,9 +177,7 @@ impl LiveScenes {
         };
         scene.heard = Instant::now();
         let is_moment = scene.watch.tracks.is_moment();
-        scene.watch.tracks.name(names);
-        let names = scene.watch.tracks.names();
-        let window = made.map(|(window, ())| window.with_names(names.clone()));
+        let window = made.map(|(window, ())| window);
         let mut waiting = self.waiting.iter();
         let older = waiting.position(|(scene, _)| self.is_latest_only && *scene == name);
         match (older, window) {
@@ -311,24 +297,6 @@ impl LiveScenes {
             }
         }
         batch
-    }
-
-    /// Forecasts the [next batch](Self::next_batch), in its order.
-    pub fn forecast<M: Forecaster>(&mut self, model: &M, pedestrians: usize) -> Vec<SceneForecast> {
-        let SceneBatch { scenes, windows } = self.next_batch(pedestrians);
-        let forecasts: Vec<_> = match model.forecast_all(&windows) {
-            Ok(forecasts) => forecasts.into_iter().map(Ok).collect(),
-            // The error does not name its window, so each window is forecast separately.
-            Err(_) => windows.iter().map(|window| model.forecast(window)).collect(),
-        };
-        let answers = scenes.into_iter().zip(windows).zip(forecasts);
-        answers
-            .map(|((scene, window), forecast)| SceneForecast {
-                scene,
-                window,
-                forecast,
-            })
-            .collect()
     }
 }
 

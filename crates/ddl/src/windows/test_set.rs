@@ -5,16 +5,28 @@ use crate::error::DdlError;
 use crate::error::more_for_validation;
 use crate::goals::model::GoalModel;
 use crate::run::builtin_model::BuiltinModel;
+use crate::run::model_source::ModelSource;
 use crate::run::training_data::{digest, fold_by_name};
 use crate::run::validation_part::ValidationPart;
-use crate::windows::split::Split;
 use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
+use ddl_network::DeviceChoice;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Seed of the test subset, fixed so that all runs are tested on the same windows.
 const SUBSET_SEED: u64 = 0;
+
+/// The windows to evaluate on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Split {
+    /// The scene left out of training.
+    Test,
+    /// The last part of the training recordings, kept out of training for validation.
+    Validation,
+}
 
 /// Test windows with the rules they belong to. A window under both rules is forecast once.
 #[derive(Debug)]
@@ -316,8 +328,8 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
         return Ok(());
     }
     let mut others = BuiltinModel::ALL.into_iter().filter(|model| {
-        let mut recordings = recordings.iter();
-        recordings.all(|recording| model.is_untrained_on(recording).unwrap_or(false))
+        let goals = GoalModel::open(&ModelSource::Builtin(*model), DeviceChoice::Cpu);
+        goals.is_ok_and(|goals| recordings.iter().all(|one| goals.fingerprints().is_unknown(one)))
     });
     let other = match others.next() {
         _ if goals.config().data.convention == Convention::Own && goals.source().run().is_some() => {
