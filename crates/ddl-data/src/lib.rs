@@ -99,8 +99,8 @@ pub use convention::Convention;
 pub use dataset::Dataset;
 pub use ddl_core::distance;
 pub use ddl_core::{
-    HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, PedestrianNames, Position, RememberedTrack,
-    TIME_STEP, WINDOW, Window, WindowError, between,
+    FRAME_LIMIT, HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, PedestrianNames, Position,
+    RememberedTrack, TIME_STEP, WINDOW, Window, WindowError, between,
 };
 pub use error::{DataError, FormatError, RecordingError};
 pub use fold::{Fold, TrainingSplit};

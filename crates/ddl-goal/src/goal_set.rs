@@ -5,6 +5,7 @@ use crate::error::GoalError;
 use crate::expert::Expert;
 use crate::geometric_median::geometric_median;
 use crate::heading::HeadingFrame;
+use crate::params::MOST_CLUSTERS;
 use crate::points::{Points, is_in_range, squared_distance};
 
 /// Steps of Lloyd's iteration of [`GoalSet::from_endpoints`].
@@ -70,11 +71,11 @@ impl GoalSet {
         clusters: usize,
     ) -> Result<Self, GoalError> {
         let wrong = |problem: String| Err(GoalError::Ends { problem });
-        if ends.is_empty() || ends.len() != weights.len() || clusters == 0 {
+        if ends.is_empty() || ends.len() != weights.len() || !(1..=MOST_CLUSTERS).contains(&clusters) {
             let (ends, weights) = (ends.len(), weights.len());
             return wrong(format!(
-                "{ends} endpoints with {weights} weights for {clusters} goals: need one weight per endpoint, and at \
-                 least one endpoint and one goal"
+                "{ends} endpoints with {weights} weights for {clusters} goals: need one weight per endpoint, at least \
+                 one endpoint, and 1 to {MOST_CLUSTERS} goals"
             ));
         }
         let total: f64 = weights.iter().sum();

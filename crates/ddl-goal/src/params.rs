@@ -6,7 +6,7 @@ use crate::error::ParamsError;
 use crate::span::QuerySpan;
 
 /// Largest number of goals for a pedestrian; a forecast has 20. A file that asks for more would take all memory.
-const MOST_CLUSTERS: usize = 1000;
+pub(crate) const MOST_CLUSTERS: usize = 1000;
 /// Largest number of runs of k-means for a pedestrian.
 const MOST_RESTARTS: usize = 1000;
 

@@ -3,7 +3,7 @@
 use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{of_any, raised};
 use crate::forecasts::names;
-use crate::interruptible::{Stop, run, run_telling};
+use crate::interruptible::{Stop, User, run, run_on};
 use crate::model::Model;
 use crate::moments::Moments;
 use crate::recording::Recording;
@@ -244,7 +244,7 @@ pub(crate) fn evaluate_model(
         }
         Ok(())
     };
-    let evaluated = run_telling(py, work, tell)?;
+    let evaluated = run_on(User::Calls, py, work, tell)?;
     let rows = evaluated.map_err(raised)?.rows;
     let rows = rows.iter().map(serde_json::to_string);
     rows.collect::<Result<_, _>>().map_err(of_any)

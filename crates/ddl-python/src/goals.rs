@@ -15,14 +15,13 @@ pub(crate) struct GoalEstimator(Arc<ddl::goal::GoalEstimator>);
 #[pymethods]
 impl GoalEstimator {
     #[new]
-    #[pyo3(signature = (experts, *, similar = 800, goals = 20, seed = 0))]
-    fn new(experts: PyReadonlyArray3<'_, f64>, similar: usize, goals: usize, seed: u64) -> PyResult<Self> {
+    #[pyo3(signature = (experts, *, similar = 800, goals = 20))]
+    fn new(experts: PyReadonlyArray3<'_, f64>, similar: usize, goals: usize) -> PyResult<Self> {
         let tracks = tracks("experts", &experts, WINDOW, false)?;
         let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(of_any)?;
         let params = GoalEstimatorParams {
-            experts: similar.min(library.tracks().len()),
+            experts: similar,
             clusters: goals,
-            seed,
             ..Default::default()
         };
         let estimator = ddl::goal::GoalEstimator::new(params, library).map_err(of_any)?;

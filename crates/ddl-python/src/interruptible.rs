@@ -46,24 +46,9 @@ pub(crate) fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Stop) ->
     run_on(User::Calls, py, work, |_| Ok(()))
 }
 
-/// As [`run`], on the pool for live frames.
-pub(crate) fn run_live<T: Send + 'static>(
-    py: Python<'_>,
-    work: impl FnOnce(&Stop) -> T + Send + 'static,
-) -> PyResult<T> {
-    run_on(User::Live, py, work, |_| Ok(()))
-}
-
-/// As [`run`], with progress: `tell` is called with the GIL every 50 ms, and may end the call with an exception.
-pub(crate) fn run_telling<T: Send + 'static>(
-    py: Python<'_>,
-    work: impl FnOnce(&Stop) -> T + Send + 'static,
-    tell: impl FnMut(Python<'_>) -> PyResult<()>,
-) -> PyResult<T> {
-    run_on(User::Calls, py, work, tell)
-}
-
-fn run_on<T: Send + 'static>(
+/// As [`run`], on another pool and with progress: `tell` is called with the GIL every 50 ms, and may end the call with
+/// an exception.
+pub(crate) fn run_on<T: Send + 'static>(
     user: User,
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,

@@ -3,16 +3,17 @@
 use crate::arrays::points;
 use crate::errors::{of_any, raised};
 use crate::forecasts::{PlainOrCertified, named_parts};
-use crate::interruptible::{run_live, wait_for};
+use crate::interruptible::{User, run_on, wait_for};
 use crate::model::Model;
 use crate::moments::{Moments, clock_of_rate, unit_named};
 use crate::observed::WindowOptions;
-use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, Position, TimeUnit, Window};
+use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, PedestrianNames, Position, TimeUnit, Window};
 use ddl::{AdaptiveRegions, Ddl, DdlError, LiveForecaster, MemoryFile};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -158,8 +159,8 @@ impl Live {
 
     /// A forecast (`None` without pedestrians to forecast), the pedestrians whose positions do not fit, each with its
     /// distance from where it was expected, and an error if the memory could not be written. With a unit, `frame` is a
-    /// time in microseconds.
-    #[pyo3(signature = (frame, unit, ids, xy))]
+    /// time in microseconds. `words` are the names of ids.
+    #[pyo3(signature = (frame, unit, ids, xy, words))]
     fn observe<'py>(
         &self,
         py: Python<'py>,
@@ -167,6 +168,7 @@ impl Live {
         unit: Option<&str>,
         ids: PyReadonlyArray1<'py, i64>,
         xy: PyReadonlyArray2<'py, f64>,
+        words: BTreeMap<i64, String>,
     ) -> PyResult<(Option<Bound<'py, PyDict>>, Vec<(i64, f64)>, Option<String>)> {
         let moments = match unit {
             Some(unit) => Moments::of_times(unit_named(unit)?),
@@ -185,12 +187,17 @@ impl Live {
         }
         let seen = ids.as_array().into_iter().map(|id| PedestrianId(*id));
         let seen: Vec<_> = seen.zip(positions).collect();
+        let words = words.into_iter().map(|(id, word)| (PedestrianId(id), word.into()));
+        let names = PedestrianNames::new(words.collect());
+        let of_frame = names.clone();
         let mut turn = Turn::take(py, &self.place)?;
-        let now = run_live(py, move |_| {
-            let watching = turn.watching();
-            watching.map(|watching| watching.observe(frame, seen))
-        })?;
-        let Some(answer) = now.transpose().map_err(|error| wrong_frame(error, moments))? else {
+        let observe = move |_: &_| {
+            let watching = turn.watching()?;
+            watching.live.name(&of_frame);
+            Some(watching.observe(frame, seen))
+        };
+        let now = run_on(User::Live, py, observe, |_| Ok(()))?;
+        let Some(answer) = now.transpose().map_err(|error| wrong_frame(error, moments, &names))? else {
             return Ok((None, Vec::new(), None));
         };
         let parts = answer
@@ -225,13 +232,14 @@ impl Live {
     /// Writes the memory and closes its file; returns a warning, if any.
     fn close(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.place)?;
-        let warning = run_live(py, move |_| turn.watching().map_or(Ok(None), WatchedPlace::close))?;
+        let close = move |_: &_| turn.watching().map_or(Ok(None), WatchedPlace::close);
+        let warning = run_on(User::Live, py, close, |_| Ok(()))?;
         warning.map_err(raised)
     }
 }
 
 /// The error with frame numbers or times as the user counts them.
-fn wrong_frame(error: DdlError, moments: Moments) -> PyErr {
+fn wrong_frame(error: DdlError, moments: Moments, names: &PedestrianNames) -> PyErr {
     let DdlError::Live(error) = error else {
         return raised(error);
     };
@@ -244,10 +252,8 @@ fn wrong_frame(error: DdlError, moments: Moments) -> PyErr {
             words(last)
         ),
         LiveError::Duplicate { pedestrian, frame } => {
-            format!(
-                "pedestrian {pedestrian} is in {} twice; keep one position",
-                words(frame)
-            )
+            let (name, frame) = (names.of(pedestrian), words(frame));
+            format!("pedestrian {name} is in {frame} twice; keep one position")
         }
         error => return of_any(error),
     })

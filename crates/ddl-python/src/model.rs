@@ -5,7 +5,7 @@ use crate::errors::{of_any, raised};
 use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, WindowOptions, past_tracks};
-use crate::recording::{ObservedWindows, Recording};
+use crate::recording::{Recording, doubt};
 use crate::scene::plan;
 use ddl::data::{Completeness, PedestrianId, Window};
 use ddl::{Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource, RecordingPlayer};
@@ -188,13 +188,13 @@ impl Model {
         joint: bool,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
         let options = ForecastOptions::new(&self.0, samples, certificates, joint)?;
-        let mut observed = WindowOptions::new(whole, max_age, every)?;
-        observed.last = last;
-        let ObservedWindows { windows, doubt } = recording.observed(py, observed)?;
-        let forecasts = self.forecasts(py, options, windows.clone())?;
-        let pairs = windows.iter().zip(&forecasts);
+        let mut windows = WindowOptions::new(whole, max_age, every)?;
+        windows.last = last;
+        let observed = recording.observed(py, windows)?;
+        let forecasts = self.forecasts(py, options, observed.windows.clone())?;
+        let pairs = observed.windows.iter().zip(&forecasts);
         let forecasts = pairs.map(|(window, forecast)| named_parts(py, window, forecast, recording.moments));
-        Ok((forecasts.collect::<PyResult<_>>()?, doubt))
+        Ok((forecasts.collect::<PyResult<_>>()?, doubt(&observed)))
     }
 
     /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
@@ -233,9 +233,9 @@ impl Model {
         most: usize,
         joint: bool,
     ) -> PyResult<(String, Option<String>)> {
-        let observed = WindowOptions::new(false, None, None)?;
-        let ObservedWindows { windows, doubt } = recording.observed(py, observed)?;
-        if windows.is_empty() {
+        let observed = recording.observed(py, WindowOptions::new(false, None, None)?)?;
+        let doubt = doubt(&observed);
+        if observed.windows.is_empty() {
             return Err(PyValueError::new_err(format!(
                 "no pedestrian of the recording can be forecast; check fps, and that positions are in metres{}",
                 doubt.map_or_else(String::new, |doubt| format!(": {doubt}"))
@@ -244,7 +244,7 @@ impl Model {
         let player = RecordingPlayer {
             model: &self.0,
             recording: &recording.tracks,
-            windows: &windows,
+            windows: &observed.windows,
             most: most.max(1),
             joint,
         };
@@ -252,7 +252,9 @@ impl Model {
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
         let (name, clock) = (recording.tracks.name(), recording.moments.clock);
-        let page = player.to_html(&forecasts, name, None, clock).map_err(raised)?;
+        let page = player
+            .to_html(&forecasts, name, observed.warning.as_ref(), clock)
+            .map_err(raised)?;
         Ok((page, doubt))
     }
 }

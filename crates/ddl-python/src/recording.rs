@@ -6,14 +6,14 @@ use crate::interruptible::run;
 use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
 use crate::observed::WindowOptions;
 use ddl::data::{
-    Clock, ColumnChoice, Completeness, Format, Homography, Misfit, Observation, PedestrianId, PedestrianName,
-    Recording as Tracks, RecordingError, Window, parse_columns, write_recording,
+    ColumnChoice, FRAME_LIMIT, Format, Homography, Observation, PedestrianId, PedestrianName, Recording as Tracks,
+    RecordingError, parse_columns, write_recording,
 };
+use ddl::{ObservedTracks, TimedRecording, TrackUnits};
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
-use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -30,49 +30,44 @@ pub(crate) struct Recording {
     fps: Option<f64>,
 }
 
-/// The frame rate, if the user gives it.
-#[derive(Debug, Clone, Copy)]
-struct GivenRate {
-    fps: Option<f64>,
-    frame_step: Option<i64>,
-}
-
-impl GivenRate {
-    fn of(self, rows: Tracks) -> PyResult<Recording> {
-        if self.fps.is_some() && self.frame_step.is_some() {
-            return Err(PyValueError::new_err(
-                "give fps or frame_step, not both: fps counts frames per second, frame_step frames in 0.4 s",
-            ));
-        }
-        let unit = rows.time_unit();
-        let is_given = self.fps.is_some() || self.frame_step.is_some();
-        if unit.is_some() && is_given {
-            return Err(PyValueError::new_err(
-                "the rows have times, and fps or frame_step gives a rate of frame numbers; leave it out",
-            ));
-        }
-        let stated = rows.stated_frame_time().filter(|_| !is_given).map(f64::recip);
-        let fps = self.fps.or(stated);
-        let clock = match (unit, fps) {
-            (Some(unit), _) => Clock::with_stamps(unit),
-            (None, Some(fps)) => clock_of_rate(fps)?,
-            (None, None) => Clock::with_frame_step(self.frame_step.unwrap_or(rows.frame_step())).map_err(of_any)?,
-        };
-        let tracks = Arc::new(rows.on_clock(clock).map_err(of_any)?);
-        let is_same = unit.is_some() || clock.counts_frames();
-        Ok(Recording {
-            rows: if is_same { Arc::clone(&tracks) } else { Arc::new(rows) },
-            tracks,
-            moments: Moments { clock, unit },
-            fps,
-        })
+/// The rows on the clock of the rate that the user gives, or else the file.
+fn on_clock(rows: Tracks, fps: Option<f64>, frame_step: Option<i64>) -> PyResult<Recording> {
+    if fps.is_some() && frame_step.is_some() {
+        return Err(PyValueError::new_err(
+            "give fps or frame_step, not both: fps counts frames per second, frame_step frames in 0.4 s",
+        ));
     }
+    let unit = rows.time_unit();
+    let is_given = fps.is_some() || frame_step.is_some();
+    if unit.is_some() && is_given {
+        return Err(PyValueError::new_err(
+            "the rows have times, and fps or frame_step gives a rate of frame numbers; leave it out",
+        ));
+    }
+    // A rate that is none has an error in the words of Python.
+    fps.map(clock_of_rate).transpose()?;
+    let given = TrackUnits {
+        fps,
+        frame_step,
+        ..TrackUnits::default()
+    };
+    let timed = TimedRecording::new(&rows, &given, &TrackUnits::default()).map_err(raised)?;
+    let stated = rows.stated_frame_time().filter(|_| !is_given).map(f64::recip);
+    let (clock, tracks) = (timed.clock, Arc::new(timed.recording.with_notes(timed.notes)));
+    let is_same = unit.is_some() || clock.counts_frames();
+    Ok(Recording {
+        rows: if is_same { Arc::clone(&tracks) } else { Arc::new(rows) },
+        tracks,
+        moments: Moments { clock, unit },
+        fps: fps.or(stated),
+    })
 }
 
-/// The windows of a recording, and text about what else was in it.
-pub(crate) struct ObservedWindows {
-    pub(crate) windows: Vec<Window>,
-    pub(crate) doubt: Option<String>,
+/// What is doubtful or missing in the windows of a recording.
+pub(crate) fn doubt(observed: &ObservedTracks) -> Option<String> {
+    let doubts = observed.misfits().into_iter().chain(observed.never_forecast());
+    let doubts: Vec<String> = doubts.collect();
+    (!doubts.is_empty()).then(|| doubts.join("; "))
 }
 
 impl Recording {
@@ -88,53 +83,11 @@ impl Recording {
     }
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast.
-    pub(crate) fn observed(&self, py: Python<'_>, options: WindowOptions) -> PyResult<ObservedWindows> {
-        let recording = self.clone();
-        run(py, move |_| recording.observe(options))
-    }
-
-    fn observe(&self, options: WindowOptions) -> ObservedWindows {
-        let (mut windows, mut forecast) = (Vec::new(), BTreeSet::new());
-        let observed = self
-            .tracks
-            .observe_each(options.of(self.tracks.live_tracks()), |window| {
-                forecast.extend(window.pedestrians().iter().copied());
-                if options.last {
-                    windows.clear();
-                }
-                windows.push(window);
-            });
-        let names = self.tracks.names();
-        let misfits = Misfit::words(&observed.misfits, |misfit| {
-            format!(
-                "pedestrian {} at {}",
-                names.of(misfit.pedestrian),
-                self.moments.words(misfit.tick)
-            )
-        });
-        let missing = self.words_of_missing(options, &forecast);
-        let doubts: Vec<String> = misfits.into_iter().chain(missing).collect();
-        ObservedWindows {
-            windows,
-            doubt: (!doubts.is_empty()).then(|| doubts.join("; ")),
-        }
-    }
-
-    /// Text about pedestrians who are in no window, though they have rows enough.
-    fn words_of_missing(&self, options: WindowOptions, found: &BTreeSet<PedestrianId>) -> Option<String> {
-        if options.completeness == Completeness::Whole || options.every.is_some() {
-            return None;
-        }
-        let mut rows: Vec<PedestrianId> = self.tracks.observations().iter().map(|row| row.pedestrian).collect();
-        rows.sort_unstable();
-        let known = rows.chunk_by(|a, b| a == b);
-        let missing = known.filter(|rows| rows.len() > 1 && !found.contains(&rows[0])).count();
-        (missing > 0).then(|| {
-            format!(
-                "{missing} of {} pedestrians are never forecast, because they have no two rows that belong together \
-                 and are at most 2 s apart",
-                self.tracks.pedestrians().len()
-            )
+    pub(crate) fn observed(&self, py: Python<'_>, options: WindowOptions) -> PyResult<ObservedTracks> {
+        let (tracks, clock) = (Arc::clone(&self.tracks), self.moments.clock);
+        run(py, move |_| {
+            let live = options.of(tracks.live_tracks());
+            ObservedTracks::new((tracks, clock), live, options.last)
         })
     }
 }
@@ -180,7 +133,9 @@ impl Recording {
         let made = Tracks::in_usual_step(name, observations);
         let mut tracks = made.map_err(|error| match error {
             RecordingError::Duplicate { pedestrian, frame } => {
-                let word = words.as_ref().and_then(|words| words.get(pedestrian.0 as usize));
+                let word = words
+                    .as_ref()
+                    .and_then(|words| words.get((pedestrian.0 - FRAME_LIMIT) as usize));
                 let pedestrian = word.map_or_else(|| pedestrian.to_string(), |word| format!("{word:?}"));
                 let moment = unit.map_or(Moments::FRAMES, Moments::of_times).words(frame);
                 PyValueError::new_err(format!("pedestrian {pedestrian} is in {moment} twice"))
@@ -189,10 +144,10 @@ impl Recording {
         })?;
         tracks = tracks.with_time_unit(unit);
         if let Some(words) = words {
-            let numbered = (0..).map(PedestrianId).zip(words.into_iter().map(Arc::from));
+            let numbered = (FRAME_LIMIT..).map(PedestrianId).zip(words.into_iter().map(Arc::from));
             tracks = tracks.with_words(numbered.collect());
         }
-        GivenRate { fps, frame_step }.of(tracks)
+        on_clock(tracks, fps, frame_step)
     }
 
     #[staticmethod]
@@ -224,7 +179,7 @@ impl Recording {
             let homography = Homography::try_from(rows).map_err(of_any)?;
             tracks = homography.to_ground(&tracks).map_err(of_any)?;
         }
-        GivenRate { fps, frame_step }.of(tracks)
+        on_clock(tracks, fps, frame_step)
     }
 
     #[pyo3(signature = (path, *, format = "table"))]
@@ -236,7 +191,7 @@ impl Recording {
     /// What was assumed or left out by the reader, a sentence each.
     #[getter]
     fn notes(&self) -> Vec<String> {
-        self.rows.notes().to_vec()
+        self.tracks.notes().to_vec()
     }
 
     #[getter]

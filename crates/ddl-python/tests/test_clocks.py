@@ -107,6 +107,28 @@ def test_live_has_the_bits_of_the_recording(forecaster, fps):
     assert_same_bits(made, forecaster.forecast_recording(recording))
 
 
+def test_joint_futures_do_not_depend_on_who_came_first(forecaster, tmp_path):
+    frame, one, x, y = film(2.5)
+    name = np.array(["zoe", "bob", "anna", "carl"])[one]
+    recording = ddl.Recording(frame, name, x, y, fps=2.5)
+    recording.write(tmp_path / "by_frame.csv")
+    head, *rows = (tmp_path / "by_frame.csv").read_text().splitlines()
+    rows.sort(key=lambda row: (row.split(",")[1], int(row.split(",")[0])))
+    (tmp_path / "by_name.csv").write_text("\n".join([head, *rows]))
+    files = [ddl.read(tmp_path / f"{order}.csv", fps=2.5) for order in ("by_frame", "by_name")]
+    with ddl.Live(forecaster, fps=2.5, joint=True) as live:
+        for at in np.unique(frame):
+            now = frame == at
+            last = live.observe(at, name[now], np.column_stack([x[now], y[now]]))
+        with pytest.raises(ValueError, match="pedestrian bob is in frame 99 twice"):
+            live.observe(99, ["bob", "bob"], [[0, 0], [1, 1]])
+    for rows in (recording, pickle.loads(pickle.dumps(recording)), *files):
+        (made,) = forecaster.forecast_recording(rows, last=True, joint=True)
+        order = [made.ids.tolist().index(one) for one in last.ids]
+        # The order of the pedestrians changes the rounding.
+        assert np.allclose(made.paths[order], last.paths, atol=1e-5) and np.allclose(made.weights[order], last.weights)
+
+
 def test_pedestrians_with_clocks_of_their_own(forecaster):
     time, one, x, y = own_clocks()
     made = forecaster.forecast_recording(ddl.Recording(time=time, id=one, x=x, y=y))

@@ -296,7 +296,8 @@ def test_suspicious_input_gives_a_warning(forecaster, crossing, tracks, tmp_path
         with pytest.warns(ddl.DoubtWarning, match=r"recording: |unlike"):
             forecaster.forecast_recording(recording)
     with pytest.warns(ddl.DoubtWarning, match="recording: "):
-        forecaster.show(slow)
+        forecaster.show(slow, tmp_path / "slow.html")
+    assert "Doubtful: nine in ten steps" in (tmp_path / "slow.html").read_text()
     with pytest.warns(ddl.DoubtWarning, match="recording: "), pytest.raises(ValueError, match="in metres"):
         forecaster.show(pixels)
     with pytest.warns(ddl.DoubtWarning, match="positions are in metres"):

@@ -5,7 +5,7 @@ import pickle
 import ddl_forecast as ddl
 import numpy as np
 import pytest
-from ddl_forecast._recording import WRITTEN
+from ddl_forecast._recording import FORMATS, WRITTEN
 
 
 @pytest.mark.parametrize("format", WRITTEN)
@@ -20,6 +20,14 @@ def test_a_written_recording_is_read_back(format, tmp_path, tracks):
             assert np.array_equal(getattr(back, column), getattr(recording, column)), column
     again = pickle.loads(pickle.dumps(recording))
     assert np.array_equal(again.x, recording.x) and again.frame_step == recording.frame_step
+
+
+def test_every_format_is_named(tmp_path):
+    (tmp_path / "x.csv").write_text("frame,id,x,y\n")
+    with pytest.raises(ValueError, match="format must be one of") as error:
+        ddl.read(tmp_path / "x.csv", format="none")
+    names = str(error.value).split("one of ")[1].split("; found")[0]
+    assert set(names.split(", ")) == set(FORMATS)
 
 
 def test_words_and_rates(tmp_path):
@@ -38,6 +46,13 @@ def test_words_and_rates(tmp_path):
     assert set(ddl.read(tmp_path / "words.csv").id.tolist()) == {"ann, a", "bob"}
     with pytest.raises(ValueError, match="word"):
         whole.write(tmp_path / "words.txt", format="obsmat")
+    file = tmp_path / "x.ndjson"
+    ddl.Recording(10 * frame, [1, 2] * 40, np.arange(80) * 0.01, np.zeros(80)).write(file, format="trajnet")
+    file.write_text('{"scene": {"id": 0, "p": 1, "s": 0, "e": 390, "fps": 2}}\n' + file.read_text())
+    with pytest.warns(ddl.DoubtWarning, match="read as --fps 20"):
+        assert ddl.read(file).frame_step == 8
+    with pytest.warns(ddl.DoubtWarning, match="read as --fps 25, although the file gives 2 frames per second"):
+        assert ddl.read(file, fps=25).frame_step == 10
 
 
 def test_misaligned_and_strided_arrays_are_copied(tmp_path):

@@ -70,7 +70,8 @@ impl View {
         });
         output::write_output(Some(&path), &page)?;
         let unfamiliar = player.unfamiliar(&forecasts, clock);
-        for warning in unfamiliar.into_iter().chain(observed.misfits()) {
+        let misfits = observed.misfits().map(|words| format!("warning: {words}"));
+        for warning in unfamiliar.into_iter().chain(misfits) {
             tell(format_args!("{warning}"));
         }
         if output::file_of(Some(&path)).is_none() {

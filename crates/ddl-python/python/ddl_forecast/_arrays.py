@@ -13,7 +13,7 @@ Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
-#: Larger whole numbers are not exact as float64.
+#: Larger whole numbers are not exact as float64. Words are numbered from here on.
 LARGEST = 2**53
 
 
@@ -51,7 +51,7 @@ def plan_rows(plan: ArrayLike) -> Floats:
 
 
 def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
-    """Ids as whole numbers, and the word for each number; None if the ids are whole numbers already."""
+    """Ids as whole numbers, and the words from ``LARGEST`` on; None if the ids are whole numbers already."""
     array = column(ids, "id")
     if array.dtype.kind in "iuf":
         return whole(array, "id"), None
@@ -63,7 +63,7 @@ def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
             )
         words.append(str(value))
     known, coded = np.unique(np.array(words, dtype=np.str_), return_inverse=True)
-    return np.ascontiguousarray(coded, dtype=np.int64).reshape(-1), known.tolist()
+    return LARGEST + np.ascontiguousarray(coded, dtype=np.int64).reshape(-1), known.tolist()
 
 
 def whole(values: ArrayLike, name: str) -> Integers:

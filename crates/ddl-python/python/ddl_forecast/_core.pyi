@@ -1,7 +1,7 @@
 """The compiled module. It takes contiguous arrays of float64 or int64."""
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, final
 
 import numpy as np
@@ -142,7 +142,7 @@ class Live:
         joint: bool,
     ) -> Live: ...
     def observe(
-        self, frame: int, unit: str | None, ids: Integers, xy: Floats
+        self, frame: int, unit: str | None, ids: Integers, xy: Floats, words: Mapping[int, str]
     ) -> tuple[dict[str, Any] | None, list[tuple[int, float]], str | None]: ...
     def clear(self) -> None: ...
     def remembered(self) -> int: ...
@@ -204,7 +204,7 @@ class SearchIndex:
 
 @final
 class GoalEstimator:
-    def __new__(cls, experts: Floats, *, similar: int = 800, goals: int = 20, seed: int = 0) -> GoalEstimator: ...
+    def __new__(cls, experts: Floats, *, similar: int = 800, goals: int = 20) -> GoalEstimator: ...
     def __len__(self) -> int: ...
     def estimate(self, past: Floats) -> tuple[Floats, Floats]: ...
 

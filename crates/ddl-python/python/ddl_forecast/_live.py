@@ -15,12 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import floats, moments
+from ddl_forecast._arrays import LARGEST, floats, moments
 from ddl_forecast._forecast import DoubtWarning, Forecast
 from ddl_forecast._forecaster import Forecaster
 
-#: Words are numbered from here on.
-FIRST_WORD = 2**52
 #: Number of words that are kept: far more than pedestrians can be present.
 MOST_WORDS = 100_000
 
@@ -77,7 +75,7 @@ class Live:
         self._has_times = fps is None
         self._numbers: dict[str, int] = {}
         self._words: dict[int, str] = {}
-        self._next = FIRST_WORD
+        self._next = LARGEST
         self._turn = threading.Lock()
         self._told = False
         self._doubted = False
@@ -119,17 +117,16 @@ class Live:
         positions = np.empty((0, 2)) if len(people) == 0 and np.size(xy) == 0 else floats(xy, 2, "xy", "(n, 2)")
         with self._turn:
             numbers = np.array([self._number(one) for one in people], dtype=np.int64)
-            parts, misfits, unwritten = self._core.observe(number, unit, numbers, positions)
-            words = self._words
-            names = None if parts is None else [words.get(one, one) for one in parts["ids"]]
-            misfit = None if not misfits else (words.get(misfits[0][0], misfits[0][0]), misfits[0][1])
-            self._forget({*numbers.tolist(), *(() if parts is None else parts["ids"])})
+            words = {number: self._words[number] for number in numbers.tolist() if number >= LARGEST}
+            parts, misfits, unwritten = self._core.observe(number, unit, numbers, positions, words)
+            misfit = None if not misfits else (self._words.get(misfits[0][0], misfits[0][0]), misfits[0][1])
+            self._forget({*people, *(() if parts is None else parts["ids"])})
         self._tell_refusal()
         if unwritten is not None:
             warnings.warn(
                 f"the memory could not be written, the next attempt follows in a minute: {unwritten}", stacklevel=2
             )
-        forecast = None if parts is None else Forecast._of(parts, names, joint=self._joint)
+        forecast = None if parts is None else Forecast._of(parts, joint=self._joint)
         doubt = None if forecast is None else forecast.unfamiliar()
         if misfit is not None:
             doubt = (
@@ -158,8 +155,8 @@ class Live:
         """Numbers are kept; words get numbers beyond those of trackers."""
         if isinstance(one, (int, np.integer)) and not isinstance(one, bool):
             number = int(one)
-            if abs(number) >= FIRST_WORD:
-                raise ValueError(f"the id {one} is not below 2^52 in size; give it as a word")
+            if abs(number) >= LARGEST:
+                raise ValueError(f"the id {one} is not below 2^53 in size; give it as a word")
             return number
         if not isinstance(one, str):
             raise ValueError(f"the id {one!r} is neither a whole number nor a word")
@@ -172,12 +169,12 @@ class Live:
         self._words[number] = one
         return number
 
-    def _forget(self, keep: set[int]) -> None:
+    def _forget(self, keep: set[Hashable]) -> None:
         """Drop the words of pedestrians who left before the last frames, so that a long stream needs little memory."""
         if len(self._words) <= MOST_WORDS:
             return
         for number in list(self._words)[: len(self._words) - MOST_WORDS // 2]:
-            if number not in keep:
+            if self._words[number] not in keep:
                 del self._numbers[self._words.pop(number)]
 
     def _tell_refusal(self) -> None:

@@ -17,7 +17,10 @@ from ddl_forecast._forecast import DoubtWarning
 #: Formats of files of tracks that are read and written, by name.
 WRITTEN = ("table", "trajnet", "social-gan", "star-csv", "obsmat")
 #: Formats that are read.
-FORMATS = (*WRITTEN, "id-first", "petrack", "petrack-cm", "sdd", "mot", "mot-truth", "atc", "kitti", "apolloscape")
+FORMATS = (
+    *(*WRITTEN, "id-first", "petrack", "petrack-cm", "sdd", "mot", "mot-truth", "atc", "kitti", "apolloscape"),
+    *("vsp", "edinburgh"),
+)
 
 
 class Recording:

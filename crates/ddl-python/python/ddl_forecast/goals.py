@@ -16,7 +16,7 @@ __all__ = ["GoalEstimator"]
 class GoalEstimator:
     """Finds the tracks with the most similar beginnings, and clusters their endpoints into a few goals.
 
-    Similarity is soft-DTW in the frame of the heading.
+    Similarity is the distance of velocities in the frame of the heading; mirror images count too.
 
     Parameters
     ----------
@@ -38,9 +38,9 @@ class GoalEstimator:
     ((1, 3, 2), True)
     """
 
-    def __init__(self, experts: ArrayLike, *, similar: int = 800, goals: int = 20, seed: int = 0) -> None:
+    def __init__(self, experts: ArrayLike, *, similar: int = 800, goals: int = 20) -> None:
         tracks = floats(experts, 3, "experts", "(m, 20, 2)")
-        self._core = _core.GoalEstimator(tracks, similar=similar, goals=goals, seed=seed)
+        self._core = _core.GoalEstimator(tracks, similar=similar, goals=goals)
 
     def __len__(self) -> int:
         return len(self._core)

@@ -6,6 +6,7 @@ use ddl_data::{
     PlausibilityWarning, Recording, Window,
 };
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Noise (m) from which on observed paths are smoothed.
 pub const NOISY: f64 = 0.04;
@@ -18,7 +19,7 @@ pub const OWN_CLOCKS: &str = "each pedestrian has a clock of its own: moments ar
 #[non_exhaustive]
 pub struct ObservedTracks {
     /// The recording, in ticks of its clock.
-    pub recording: Recording,
+    pub recording: Arc<Recording>,
     /// The windows.
     pub windows: Vec<Window>,
     /// The clock of frames or times.
@@ -37,7 +38,8 @@ pub struct ObservedTracks {
 
 impl ObservedTracks {
     /// The windows that these tracks, empty until now, make of the recording: all of them, or only the last.
-    pub fn new((recording, clock): (Recording, Clock), tracks: LiveTracks, last: bool) -> Self {
+    pub fn new((recording, clock): (impl Into<Arc<Recording>>, Clock), tracks: LiveTracks, last: bool) -> Self {
+        let recording = recording.into();
         let completeness = tracks.completeness();
         let (mut windows, mut is_forecast) = (Vec::new(), BTreeSet::new());
         let observed = recording.observe_each(tracks, |window| {
@@ -107,46 +109,47 @@ impl ObservedTracks {
                 100.0 * self.noise
             ));
         }
-        told.extend(self.misfits());
-        if self.completeness != Completeness::Whole {
-            told.extend(self.missing());
-        }
+        told.extend(self.misfits().map(|words| format!("warning: {words}")));
+        told.extend(self.never_forecast().map(|words| format!("note: {words}")));
+        told.extend(self.missing());
         told
     }
 
-    /// A warning of positions that are left out.
+    /// A sentence about rows that do not fit their tracks.
     pub fn misfits(&self) -> Option<String> {
-        let words = words_of_misfits(&self.recording, self.clock, &self.misfits, self.warning.as_ref())?;
-        Some(format!("warning: {words}"))
+        words_of_misfits(&self.recording, self.clock, &self.misfits, self.warning.as_ref())
     }
 
-    fn missing(&self) -> Vec<String> {
-        let mut told = Vec::new();
-        if let Some(&first) = self.never_forecast.first() {
-            told.push(format!(
-                "note: {} of {} pedestrians are never forecast, first {}: a forecast needs two rows that fit, at most \
-                 2 s apart",
-                self.never_forecast.len(),
-                self.recording.pedestrians().len(),
-                self.recording.names().of(first)
-            ));
-        }
-        let Some(window) = self.windows.last() else {
-            return told;
-        };
+    /// A sentence about pedestrians who are in no window, unless only those tracked for all 8 steps are asked for.
+    pub fn never_forecast(&self) -> Option<String> {
+        let mut missing = self.never_forecast.iter();
+        let first = missing.next().filter(|_| self.completeness != Completeness::Whole)?;
+        Some(format!(
+            "{} of {} pedestrians are never forecast, first {}: a forecast needs two rows that fit, at most 2 s apart",
+            self.never_forecast.len(),
+            self.recording.pedestrians().len(),
+            self.recording.names().of(*first)
+        ))
+    }
+
+    /// A note on the pedestrians at the last moment who are in no window.
+    fn missing(&self) -> Option<String> {
+        let window = self
+            .windows
+            .last()
+            .filter(|_| self.completeness != Completeness::Whole)?;
         let last = window.frames()[OBSERVED - 1];
         let rows = self.recording.at(last);
         let is_missing = |row: &&Observation| !window.pedestrians().contains(&row.pedestrian);
         let missing = rows.iter().filter(is_missing).count();
-        if missing > 0 {
-            told.push(format!(
+        (missing > 0).then(|| {
+            format!(
                 "note: {missing} of the {} pedestrians at {} are not forecast: it is their first row, or their \
                  position is doubtful",
                 rows.len(),
                 self.clock.words(last)
-            ));
-        }
-        told
+            )
+        })
     }
 }
 
