@@ -282,8 +282,18 @@ fn a_stream_takes_the_rate_of_a_comment() {
     let stated = format!("# framerate: 10 fps\n{}", walk_at_10_hz());
     let line = "forecast - --one --threads 1 --format jsonl";
     let of_comment = place.run_on(&stated, line);
-    let of_option = place.run_on(&stated, &format!("{line} --fps 10"));
-    assert_eq!(of_comment.stdout, of_option.stdout);
+    // The same rate in any words is not another one.
+    for (option, is_other) in [
+        ("--fps 10", false),
+        ("--dt 0.1", false),
+        ("--frame-step 4", false),
+        ("--fps 9", true),
+    ] {
+        let of_option = place.run_on(&stated, &format!("{line} {option}"));
+        assert_eq!(of_comment.stdout != of_option.stdout, is_other, "{option}");
+        let told = of_option.stderr.contains("although a comment says 10 frames a second");
+        assert_eq!(told, is_other, "{}", of_option.stderr);
+    }
     assert!(
         of_comment.stderr.contains("at 10 frames a second"),
         "{}",

@@ -101,14 +101,14 @@ impl Units {
         self.rate_given().is_some() || self.homography.is_some() || of_columns
     }
 
-    /// What the options say of the columns of text.
-    pub(crate) fn choice(&self) -> anyhow::Result<ColumnChoice> {
+    /// What the options say of the columns of text, whose positions a homography maps or not.
+    pub(crate) fn choice(&self, is_mapped: bool) -> anyhow::Result<ColumnChoice> {
         if self.topic.is_some() {
             bail!("only MCAP has topics; leave out --topic");
         }
         let columns = self.columns.as_ref().map(ToString::to_string);
         let given = [&columns, &self.keep, &self.unit].map(Option::as_deref);
-        ColumnChoice::given(given, self.homography()?.is_some()).map_err(anyhow::Error::msg)
+        ColumnChoice::given(given, is_mapped).map_err(anyhow::Error::msg)
     }
 
     /// The option that gives the rate, with its value.
@@ -174,10 +174,12 @@ impl Units {
     }
 
     fn in_metres(&self, file: &Path) -> anyhow::Result<ReadFile> {
-        let (recording, format, topic) = self.as_written(file)?;
+        // A homography may be a pipe, which is read once.
+        let homography = self.homography()?;
+        let (recording, format, topic) = self.as_written(file, homography.is_some())?;
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let recording = recording.with_name(&*name);
-        let recording = match self.homography()? {
+        let recording = match homography {
             None => recording,
             Some(homography) => homography
                 .to_ground(&recording)
@@ -186,7 +188,7 @@ impl Units {
         Ok((recording, format, topic))
     }
 
-    fn as_written(&self, file: &Path) -> anyhow::Result<ReadFile> {
+    fn as_written(&self, file: &Path, is_mapped: bool) -> anyhow::Result<ReadFile> {
         if is_log(file) {
             let tracks = read_log(file, self.topic.as_deref(), self.classes()?)?;
             return Ok((tracks.recording, "mcap", Some(tracks.topic)));
@@ -201,8 +203,9 @@ impl Units {
             );
         }
         let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
-        let format = Format::guess(file, &bytes, &self.choice()?)?;
-        let recording = parse_columns(&bytes, &file.display().to_string(), format, &self.choice()?)?;
+        let choice = self.choice(is_mapped)?;
+        let format = Format::guess(file, &bytes, &choice)?;
+        let recording = parse_columns(&bytes, &file.display().to_string(), format, &choice)?;
         Ok((recording, format.name(), None))
     }
 

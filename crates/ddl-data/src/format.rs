@@ -1,6 +1,7 @@
 //! File formats of recordings: parsers from text to a checked [`Recording`]. A parser refuses anything that it does not
-//! understand, and names file, line and field. The order of the rows does not matter. Only TrajNet++ allows lines of
-//! other kinds, and overlapping scenes that repeat a track; text may have further columns and comments.
+//! understand, and names file, line and field. The order of the rows does not matter. Only TrajNet++ and
+//! Edinburgh allow lines of other kinds, and only TrajNet++ overlapping scenes that repeat a track; text may have further
+//! columns and comments.
 
 mod choice;
 mod column_names;
@@ -94,9 +95,9 @@ pub fn parse_columns(
     let mut recording = rows::into_recording(read.rows, origin)?;
     // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
     recording.rate = match (read.rate, recording.time_unit()) {
-        (rate, _) if format == Format::TrajNet => rate,
-        (rate, None) => rate.map(|rate| rate / recording.frame_step() as f64),
         (_, Some(_)) => None,
+        (rate, None) if format == Format::TrajNet => rate,
+        (rate, None) => rate.map(|rate| rate / recording.frame_step() as f64),
     };
     recording.notes = read.notes;
     Ok(recording)

@@ -160,7 +160,7 @@ impl Recording {
         Ok(recording)
     }
 
-    /// The clock that the file states: its time stamps, or the frames per second of TrajNet++ scenes.
+    /// The clock that the file states: its time stamps, or its [`rate`](Self::rate).
     ///
     /// # Errors
     /// [`ClockError`] for a rate that is out of range.
@@ -234,7 +234,7 @@ impl Recording {
         &self.names
     }
 
-    /// Annotated frames per second, if the file states it: the `fps` of TrajNet++ scenes.
+    /// Rows of a pedestrian per second, if the file states it: in TrajNet++ scenes, in a comment, or by its format.
     pub fn rate(&self) -> Option<f64> {
         self.rate
     }

@@ -21,6 +21,8 @@ const MAGIC: &str = "ddl-memory 1 ";
 const ANY_VERSION: &str = "ddl-memory ";
 /// Bytes of the first line: `MAGIC`, 64 hexadecimal digits, a line feed.
 const HEAD: usize = MAGIC.len() + 65;
+/// A memory of the largest capacity has fewer bytes.
+const MOST_BYTES: u64 = 1 << 29;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -88,7 +90,12 @@ impl SceneMemory {
             _ => (),
         }
         let mut content = Vec::new();
-        file.read_to_end(&mut content).map_err(failed)?;
+        file.take(MOST_BYTES + 1).read_to_end(&mut content).map_err(failed)?;
+        if content.len() as u64 > MOST_BYTES {
+            return Err(refused(format!(
+                "it has more than {MOST_BYTES} bytes, which no memory has"
+            )));
+        }
         if head(&content).as_bytes() != start {
             let problem = "it is damaged or cut off: its SHA-256 differs from the one in its first line";
             return Err(refused(problem.to_owned()));

@@ -9,7 +9,7 @@ use crate::track::Track;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MemorySummary {
-    /// Segments held. If it stays 0, check that frames are a whole number of steps of 0.4 s apart.
+    /// Segments held. If it stays 0, check that the rows of a pedestrian are at most 1.2 s apart.
     pub segments: usize,
     /// Pedestrians with at least one segment.
     pub tracks: usize,

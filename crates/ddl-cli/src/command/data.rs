@@ -7,8 +7,8 @@ use crate::telling::{many, tell};
 use crate::units::{ReadRecording, Units};
 use crate::{output, recordings};
 use clap::Args;
-use ddl::BuiltinModel;
 use ddl::data::{Clock, PlausibilityWarning, Recording, Summary, Window};
+use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource};
 use place_memory::{MemoryOfFile, MemoryPicture};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -90,10 +90,11 @@ impl Data {
 /// Warns of recordings that the default model was trained on, and of motions unlike those.
 fn warn_of_model<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow::Result<()> {
     let model = BuiltinModel::default();
-    let (mut all, mut unfamiliar) = (0, 0);
+    let goals = GoalModel::open(&ModelSource::Builtin(model), DeviceChoice::Cpu)?;
+    let (mut all, mut unfamiliar) = (0, 0_u32);
     for recording in recordings {
         let windows = some_windows(recording);
-        if let Some(share) = model.known_share(recording)? {
+        if let Some(share) = goals.known_share(recording) {
             tell(format_args!(
                 "warning: the built-in model {model} was trained on {} ({:.0} % of its paths are known): its forecasts \
                  of it are no test",
@@ -101,12 +102,12 @@ fn warn_of_model<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow:
                 100.0 * share
             ));
         }
-        let familiarity = model.familiarity(&windows)?;
-        let familiarity = familiarity.concat();
-        all += familiarity.len();
-        unfamiliar += familiarity.iter().filter(|&&f| f < ddl::UNFAMILIAR_THRESHOLD).count();
+        for familiarity in windows.iter().flat_map(|window| goals.familiarity(window)) {
+            all += 1;
+            unfamiliar += u32::from(familiarity < ddl::UNFAMILIAR_THRESHOLD);
+        }
     }
-    let share = 100.0 * f64::from(u32::try_from(unfamiliar)?) / f64::from(u32::try_from(all.max(1))?);
+    let share = 100.0 * f64::from(unfamiliar) / f64::from(all.max(1));
     if share > MANY_UNFAMILIAR {
         tell(format_args!(
             "warning: {share:.0} % of the motions are unlike the training motions of the built-in model {model} \

@@ -118,6 +118,10 @@ fn scenes_of_trajnet_state_the_frame_rate() {
     let two = scene(r#", "fps": 2"#);
     assert_eq!(read(&(scene("") + &two + &scene(r#", "fps": 2.0"#))).rate(), Some(2.0));
 
+    // Times have no rate.
+    let timed = trajnet_at_2_fps(&two).replace("\"f\"", "\"t\"");
+    let timed = parse_recording(timed.as_bytes(), "f", Format::TrajNet).unwrap();
+    assert_eq!((timed.rate(), timed.time_unit()), (None, Some(TimeUnit::Seconds)));
     // 24 frame numbers a second, 9.6 in 0.4 s.
     let recording = read(&two);
     let clock = recording.stated_clock().unwrap().unwrap();

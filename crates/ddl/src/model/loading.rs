@@ -11,8 +11,6 @@ use crate::run::config::RunConfig;
 use crate::run::directory::{RunDirectory, write_atomically};
 use crate::run::enough_weights;
 use crate::run::model_source::ModelSource;
-use crate::trust::familiarity::TrainingMotions;
-use ddl_data::{Recording, Window};
 use ddl_network::weights::load_weights;
 use ddl_network::{DeviceChoice, ForecastWindows};
 use std::path::Path;
@@ -126,37 +124,6 @@ impl ModelSource {
             Self::Run(run) => run.config(),
             Self::Packed(_) | Self::Builtin(_) => packed::config(&packed::bytes(self)?, self),
         }
-    }
-}
-
-impl BuiltinModel {
-    /// Familiarity of the observed motions of these windows, as
-    /// [`GoalModel::familiarity`](crate::GoalModel::familiarity) but without loading the networks. One list for each
-    /// window, one value for each pedestrian.
-    ///
-    /// # Errors
-    /// None if the program was built from matching files, which a test ensures.
-    pub fn familiarity(self, windows: &[Window]) -> Result<Vec<Vec<f64>>, DdlError> {
-        let source = ModelSource::Builtin(self);
-        let contents = packed::contents(self.bytes(), &source)?;
-        let time_step = contents.config.star.time_step;
-        let familiarity = |window: &Window| TrainingMotions::of_window(contents.motions.as_ref(), window, time_step);
-        Ok(windows.iter().map(familiarity).collect())
-    }
-
-    /// Whether nothing of the recording is among its training recordings.
-    pub(crate) fn is_untrained_on(self, recording: &Recording) -> Result<bool, DdlError> {
-        let contents = packed::contents(self.bytes(), &ModelSource::Builtin(self))?;
-        Ok(contents.fingerprints.is_unknown(recording))
-    }
-
-    /// As [`GoalModel::known_share`](crate::GoalModel::known_share), without loading the networks.
-    ///
-    /// # Errors
-    /// As [`BuiltinModel::familiarity`].
-    pub fn known_share(self, recording: &Recording) -> Result<Option<f64>, DdlError> {
-        let contents = packed::contents(self.bytes(), &ModelSource::Builtin(self))?;
-        Ok(contents.fingerprints.known(recording))
     }
 }
 

@@ -86,7 +86,8 @@ fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) ->
         taken: 0,
         answered: 0,
     };
-    let followed = stream.follow(&IncomingFrames::of_standard_input(units.choice()?)?, &units);
+    let choice = units.choice(stream.homography.is_some())?;
+    let followed = stream.follow(&IncomingFrames::of_standard_input(choice)?, &units);
     stream.first_rows.warn();
     followed?;
     if !forecast.latest && !forecast.tracks.are_thinned() {

@@ -4,7 +4,7 @@ use crate::command::forecast::frames::StatedTime;
 use crate::command::forecast::moment::StreamState;
 use crate::units::Units;
 use ddl::NOISY;
-use ddl::data::LiveTracks;
+use ddl::data::{Clock, LiveTracks};
 
 /// Number of frames that show whether pedestrians have common ones.
 const MANY_FRAMES: u64 = 200;
@@ -13,7 +13,7 @@ impl StreamState {
     /// Tells of a comment that gives another rate than the option.
     pub(super) fn tell_other_rate(&mut self, units: &Units, stated: &StatedTime) {
         if let (Some(rate), Some(option)) = (stated.frame_rate, units.rate_given())
-            && option != format!("--fps {rate}")
+            && units.live_clock().ok().flatten() != Clock::with_frame_time(rate.recip()).ok()
         {
             let note = format_args!("note: read as {option}, although a comment says {rate} frames a second");
             self.tell_once("rate", note);
