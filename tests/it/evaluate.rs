@@ -154,11 +154,18 @@ fn a_number_goes_from_the_model_to_the_page() {
         assert!(hypotheses.all(|h| (h.certified, h.decreasing) == (Some(true), Some(true))));
     }
 
-    let printed_paths = place.ok("report run --title Corridor --out pages");
+    place.write("pages/figures/mine.svg", "a picture of the user");
+    let printed_paths = place.ok("report run run --title Corridor --out pages");
     assert!(printed_paths.ends_with("report.html\n") && printed_paths.lines().count() == 1);
     let collected = Report::load(&place.at("pages/report.json")).unwrap();
     assert_eq!(collected.title(), "Corridor");
+    // What is given twice is there once.
     assert_eq!(collected.rows(), report.rows());
+    assert_eq!(
+        json::<Vec<ForecastSnapshot>>(&place.text("pages/moments.json")),
+        moments
+    );
+    assert_eq!(place.text("pages/figures/mine.svg"), "a picture of the user");
     let markdown = place.text("pages/report.md");
     assert!(markdown.lines().next().unwrap().contains("simulated"));
     for text in [

@@ -17,7 +17,7 @@ const PACK: &str = "pack --benchmark . --out models";
 fn benchmark(profile: &str, convention: Convention, folds: &[&str]) -> Place {
     let place = Place::empty();
     let conditions = Conditions::new(convention, convention.headline_rule(), Protocol::Fair, crowd::FOLD, "");
-    let measured = baseline::measure(&conditions, &crowd::windows(4, 20), baseline::NOISE_SEED);
+    let measured = baseline::measure(&conditions, &crowd::windows(4, 20));
     let measured = measured.unwrap().remove(0);
     let mut tasks = Vec::new();
     for (&fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {
@@ -47,7 +47,7 @@ fn benchmark(profile: &str, convention: Convention, folds: &[&str]) -> Place {
         "settings": {
             "profile": profile, "convention": convention.to_string(), "data": null, "device": "cpu",
             "cargo_profile": "release",
-            "epochs": 4, "train_pedestrians": null, "proposal_steps": null, "test_pedestrians": 2500,
+            "epochs": 20, "train_pedestrians": null, "proposal_steps": null, "test_pedestrians": 2500,
             "protocols": ["fair", "single"],
             "recipe": {"name": "recommended", "optimiser": null},
         },

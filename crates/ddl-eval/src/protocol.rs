@@ -79,18 +79,16 @@ impl Protocol {
             }
             Self::Online => {
                 "as `fair`, with the tracks of the SAME recording before the last observed frame as further input, as \
-                 known to \
-                 a camera that has watched from the start; nothing later is read"
+                 known to a camera that has watched from the start; nothing later is read"
             }
             Self::OnlineSingle => {
                 "as `single`, with the tracks of the SAME recording before the last observed frame as further input, \
-                 as known \
-                 to a camera that has watched from the start; nothing later is read"
+                 as known to a camera that has watched from the start; nothing later is read"
             }
             Self::Joint => {
                 "at most 20 futures of the whole scene from the 8 observed frames alone: hypothesis k of all \
-                 pedestrians is future k; the best future is chosen once for the scene; a trained model is that of
-  `fair`"
+                 pedestrians is future k; the best future is chosen once for the scene; a trained model is that of \
+                 `fair`"
             }
         }
     }

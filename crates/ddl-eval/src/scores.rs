@@ -104,22 +104,7 @@ impl Scores {
     /// There are no windows, a window has no future, or a forecast does not belong to its window. The forecasts differ
     /// in their number of hypotheses, in having goals or in having certificates.
     pub fn evaluate(windows: &[Window], forecasts: &[Forecast]) -> Result<Self, EvaluationError> {
-        Self::evaluate_among(windows, windows, forecasts)
-    }
-
-    /// [`Scores::evaluate`] for a part of the pedestrians; `full_windows` holds the full window of each.
-    ///
-    /// Means are over the part. Collisions with true futures include all pedestrians. The collision
-    /// rate, JADE and JFDE compare forecasts, so they include only the pedestrians with forecasts.
-    ///
-    /// # Errors
-    /// As [`Scores::evaluate`]; also when a full window does not belong to the reduced one.
-    pub fn evaluate_among(
-        windows: &[Window],
-        full_windows: &[Window],
-        forecasts: &[Forecast],
-    ) -> Result<Self, EvaluationError> {
-        Self::under(Protocol::Fair, windows, full_windows, forecasts)
+        Self::under(Protocol::Fair, windows, windows, forecasts)
     }
 
     /// The two errors that tables of a protocol begin with, metres: JADE and JFDE under `joint`, else minADE and
@@ -131,8 +116,15 @@ impl Scores {
         }
     }
 
-    /// [`Scores::evaluate_among`], with the metrics of whole futures under `joint`.
-    pub(crate) fn under(
+    /// [`Scores::evaluate`] for a part of the pedestrians, with the metrics of whole futures under `joint`;
+    /// `full_windows` holds the full window of each.
+    ///
+    /// Means are over the part. Collisions with true futures include all pedestrians. The collision
+    /// rate, JADE and JFDE compare forecasts, so they include only the pedestrians with forecasts.
+    ///
+    /// # Errors
+    /// As [`Scores::evaluate`]; also when a full window does not belong to the reduced one.
+    pub fn under(
         protocol: Protocol,
         windows: &[Window],
         full_windows: &[Window],

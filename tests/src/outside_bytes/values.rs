@@ -28,7 +28,7 @@ pub(super) fn report(bytes: &[u8]) {
     assert_eq!(again, report);
     assert!(report.files().is_ok());
     let page = Page::new(&report);
-    assert!(page.figures().is_ok() && page.to_html().is_ok());
+    assert!(page.comparison().is_ok() && page.to_html().is_ok());
 }
 
 /// Reads bytes as `moments.json` and draws them.
@@ -42,7 +42,7 @@ pub(super) fn moments(bytes: &[u8]) {
         ..Page::new(&empty)
     };
     // Incomplete moments are refused, by both functions alike.
-    assert_eq!(page.figures().is_ok(), page.to_html().is_ok());
+    assert_eq!(page.comparison().is_ok(), page.to_html().is_ok());
 }
 
 /// Reads bytes as a homography, and transforms pixels.

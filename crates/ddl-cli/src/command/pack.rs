@@ -1,13 +1,13 @@
 //! `ddl pack`: a model as one small file.
 
 mod finished_benchmark;
-mod one_model;
 
 use crate::command::Telling;
 use crate::output;
 use clap::Args;
+use ddl::{Ddl, DeviceChoice, ModelSource};
 use serde_json::json;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Pack a trained model into one small file, without its tracks
 ///
@@ -39,7 +39,7 @@ impl Pack {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let packed = match (&self.benchmark, &self.model) {
             (Some(benchmark), _) => finished_benchmark::pack(benchmark, self.seed, &self.out)?,
-            (None, Some(model)) => vec![(self.out.clone(), one_model::pack(model, &self.out)?)],
+            (None, Some(model)) => vec![(self.out.clone(), pack_model(model, &self.out)?)],
             (None, None) => Vec::new(),
         };
         for (file, numbers) in packed {
@@ -51,4 +51,11 @@ impl Pack {
         }
         Ok(())
     }
+}
+
+/// Writes the packed model, and returns the number of its weights.
+fn pack_model(model: &Path, out: &Path) -> anyhow::Result<usize> {
+    let model = Ddl::open(&ModelSource::named(model), DeviceChoice::Cpu)?;
+    model.pack(out)?;
+    Ok(model.parameter_count() + model.goal_model().parameter_count())
 }

@@ -177,7 +177,7 @@ impl Train {
         })?;
         if let (Some(from), true) = (&request.from, is_validated) {
             let fold = ddl::fold_by_name(&dataset, &request.fold)?;
-            warn_of_known(from, &fold, &request.validation_recordings)?;
+            warn_of_known(from, &fold, request.validation, &request.validation_recordings)?;
         }
         let compared = finished::compare_with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
         finished::print(&request, compared.as_ref(), &self.recordings, &self.reporting)
@@ -363,10 +363,10 @@ impl Train {
 
 /// A validation part that the starting model has seen is no measure.
 ///
-/// `whole` are the recordings kept for validation as a whole; without any, each has a part.
-fn warn_of_known(from: &ModelSource, fold: &Fold<'_>, whole: &[String]) -> anyhow::Result<()> {
+/// Of all recordings a `share` is kept for validation, and `whole` ones as a whole.
+fn warn_of_known(from: &ModelSource, fold: &Fold<'_>, share: f64, whole: &[String]) -> anyhow::Result<()> {
     let goals = GoalModel::open(from, DeviceChoice::Cpu)?;
-    let is_validated = |name: &str| whole.is_empty() || whole.iter().any(|kept| kept == name);
+    let is_validated = |name: &str| share > 0.0 || whole.iter().any(|kept| kept == name);
     let recordings = fold.training_recordings().iter();
     let recordings = recordings.filter(|recording| is_validated(recording.name()));
     let known = recordings.filter(|recording| goals.known_share(recording).is_some());

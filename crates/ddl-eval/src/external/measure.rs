@@ -15,12 +15,12 @@ const FARTHEST: f64 = 3.0;
 /// Scores forecasts of a file under the protocol of the conditions, then the baselines on the same pedestrians.
 ///
 /// [`Matched::test_subset`] is added to the test subset of the conditions; a part of the pedestrians is scored as in
-/// [`Scores::evaluate_among`](crate::Scores::evaluate_among).
+/// [`Scores::under`](crate::Scores::under).
 ///
 /// # Errors
 /// [`ExternalError::Published`] under the protocol `published`; [`ExternalError::OutOfPlace`] if half of the forecasts
 /// start more than 3 m from their pedestrians; too many hypotheses; windows that cannot be scored.
-pub fn measure(conditions: &Conditions, matched: &Matched, noise_seed: u64) -> Result<Vec<ResultRow>, ExternalError> {
+pub fn measure(conditions: &Conditions, matched: &Matched) -> Result<Vec<ResultRow>, ExternalError> {
     if conditions.protocol == Protocol::Published {
         return Err(ExternalError::Published);
     }
@@ -49,7 +49,6 @@ pub fn measure(conditions: &Conditions, matched: &Matched, noise_seed: u64) -> R
         &conditions,
         &matched.windows,
         &matched.full_windows,
-        noise_seed,
     )?);
     Ok(rows)
 }

@@ -80,16 +80,14 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// Every figure as a separate SVG file on white: its name and its content.
+    /// The comparison with published results as SVG on white, if there is one.
     ///
     /// # Errors
     /// As [`to_html`](Self::to_html).
-    pub fn figures(&self) -> Result<Vec<(String, String)>, ReportError> {
+    pub fn comparison(&self) -> Result<Option<String>, ReportError> {
         self.check()?;
         let standing = standing::standing(self.report);
-        let chart = standing.map(|standing| headline_chart(&standing, ChartShape::Wide).to_file(""));
-        let named = |svg| ("comparison.svg".to_owned(), svg);
-        Ok(chart.map(named).into_iter().collect())
+        Ok(standing.map(|standing| headline_chart(&standing, ChartShape::Wide).to_file("")))
     }
 
     fn check(&self) -> Result<(), ReportError> {

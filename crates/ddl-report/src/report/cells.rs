@@ -1,6 +1,7 @@
 //! Cells of the tables.
 
 use crate::report::group::TableLine;
+use crate::report::spread::SeedSpread;
 
 pub(super) const NOTHING: &str = "-";
 
@@ -18,9 +19,14 @@ pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> Stri
 
 /// The two errors of the protocol of a line on each fold, then their mean.
 pub(super) fn errors(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
+    errors_as(line, folds, |spread| spread.to_string())
+}
+
+/// As [`errors`], with these words of a fold.
+pub(super) fn errors_as(line: &TableLine<'_>, folds: &[&str], words: fn(SeedSpread) -> String) -> Vec<String> {
     let protocol = line.conditions().protocol;
     let of_fold = |fold: &&str| {
-        let error = |at: usize| line.on_fold(fold, |s| Some(s.errors(protocol)[at]));
+        let error = |at: usize| line.on_fold(fold, |s| Some(s.errors(protocol)[at])).map(words);
         pair(error(0), error(1))
     };
     let mean = |at: usize| line.over_folds(folds, |s| Some(s.errors(protocol)[at]));

@@ -5,9 +5,8 @@ use ddl_eval::{Protocol, ResultRow};
 
 use crate::document::Table;
 use crate::literature;
-use crate::report::cells::{counts, errors, pair};
-use crate::report::group::{ResultGroup, TableLine, groups};
-use crate::report::spread::SeedSpread;
+use crate::report::cells::{counts, errors, errors_as};
+use crate::report::group::{ResultGroup, groups};
 use crate::report::{deployable, metrics, significance};
 
 /// Rows that only the full tables show, by the end of their names.
@@ -51,7 +50,8 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
     let mut seen = Vec::new();
     for group in &shown {
         for (line, label) in group.labelled() {
-            let cells = error_cells(line, &folds);
+            // The deviation of each fold would double the width of the table.
+            let cells = errors_as(line, &folds, |spread| format!("{:.3}", spread.mean));
             let row = (label, cells);
             if seen.contains(&row) || LEFT_OUT.iter().any(|name| row.0.ends_with(name)) {
                 continue;
@@ -103,19 +103,4 @@ fn of_scenes(group: &ResultGroup<'_>) -> String {
         table.row([label].into_iter().chain(errors(line, &folds)).chain(collisions));
     }
     format!("\nFutures of whole scenes, {} in metres:\n\n{table:#}", group.errors())
-}
-
-/// minADE/minFDE of each fold without their deviation, which would double the width of the table, then their mean with
-/// it.
-fn error_cells(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
-    let rounded = |spread: SeedSpread| format!("{:.3}", spread.mean);
-    let mut cells = Vec::new();
-    for fold in folds {
-        let ade = line.on_fold(fold, |s| Some(s.min_ade)).map(rounded);
-        let fde = line.on_fold(fold, |s| Some(s.min_fde)).map(rounded);
-        cells.push(pair(ade, fde));
-    }
-    let ade = line.over_folds(folds, |s| Some(s.min_ade));
-    cells.push(pair(ade, line.over_folds(folds, |s| Some(s.min_fde))));
-    cells
 }

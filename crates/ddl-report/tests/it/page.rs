@@ -45,7 +45,7 @@ fn report() -> Report {
     let (window, _) = window_and_forecast(3, 1, false);
     let row = |protocol| {
         let conditions = Conditions::new(Convention::Star, WindowRule::Published, protocol, "eth", "");
-        baseline::measure(&conditions, std::slice::from_ref(&window), 1).unwrap()
+        baseline::measure(&conditions, std::slice::from_ref(&window)).unwrap()
     };
     Report::new("A & B", Protocol::ALL.into_iter().flat_map(row)).unwrap()
 }
@@ -164,26 +164,19 @@ fn names_cannot_become_markup() {
     assert!(!embedded.contains(['\u{2028}', '\u{2029}']) && embedded.contains("x < y"));
     let moments: Value = serde_json::from_str(embedded).unwrap();
     assert_eq!(moments[0]["recording"], hostile);
-    for (name, svg) in page.figures().unwrap() {
-        assert!(!svg.contains("<script"), "{name}");
-        assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.'));
-    }
+    assert!(!page.comparison().unwrap().unwrap().contains("<script"));
 }
 
 #[test]
-fn figures_are_files_of_their_own() {
+fn the_comparison_is_a_file_of_its_own() {
     let report = report();
     let page = Page {
         report: &report,
         moments: &[moment(3, 20, true), moment(1, 1, false)],
     };
-    let figures = page.figures().unwrap();
-    let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
-    assert_eq!(names, ["comparison.svg"]);
-    for (_, svg) in &figures {
-        assert!(svg.starts_with("<?xml") && svg.contains("<title>"));
-        assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("var("));
-    }
+    let svg = page.comparison().unwrap().unwrap();
+    assert!(svg.starts_with("<?xml") && svg.contains("<title>"));
+    assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("var("));
 }
 
 #[test]
@@ -232,7 +225,7 @@ fn what_is_not_whole_is_refused_by_name() {
         let words = page.to_html().unwrap_err().to_string();
         let expected = format!("moment 1 (recording `scene`, frame 70): {expected}");
         assert!(words.starts_with(&expected), "{words}");
-        assert_eq!(page.figures().unwrap_err().to_string(), words);
+        assert_eq!(page.comparison().unwrap_err().to_string(), words);
     }
 }
 

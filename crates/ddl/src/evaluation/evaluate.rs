@@ -11,8 +11,7 @@ use crate::goals::remembering::Remembering;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
 use crate::run::words;
-use crate::windows::split::Split;
-use crate::windows::test_set::TestSet;
+use crate::windows::test_set::{Split, TestSet};
 use ddl_core::{Forecast, ForecastError, Forecaster as _, WeightedGoals, WorkDone};
 use ddl_data::{Dataset, Position, Window};
 use ddl_eval::{Protocol, ResultRow};
@@ -317,10 +316,13 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts { model, lines })
         })?;
         let (name, goals) = (model.name(), model.goal_model().words());
-        let named = variants.iter().zip(forecasts.model);
+        let (named, on) = (variants.iter().zip(forecasts.model), self.request.on);
         let mut named: Vec<_> = named
             .map(|(OracleVariant { change, .. }, forecasts)| {
-                let chosen = "best kept epoch on the TEST windows of the headline rule";
+                let chosen = match on {
+                    Split::Test => "best kept epoch on the TEST windows of the headline rule",
+                    Split::Validation => "best kept epoch on the VALIDATION windows of the headline rule",
+                };
                 let selection = change.map_or(chosen, |_| words::selection(None));
                 NamedForecasts::model(&name, forecasts, *change, goals.clone(), selection)
             })

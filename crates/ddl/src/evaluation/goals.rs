@@ -3,8 +3,7 @@
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
 use crate::goals::remembering::Remembering;
-use crate::windows::split::Split;
-use crate::windows::test_set::TestSet;
+use crate::windows::test_set::{Split, TestSet};
 use ddl_data::{Dataset, Position, Window};
 use ddl_eval::metric::reliability::Reliability;
 use ddl_goal::GoalSet;

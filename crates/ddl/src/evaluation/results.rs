@@ -57,21 +57,21 @@ impl Results {
             }
         }
         let lowest = headline.iter().map(|(seed, _)| *seed).min();
-        results.moments = headline
-            .into_iter()
-            .filter(|(seed, _)| Some(*seed) == lowest)
-            .flat_map(|(_, moments)| moments)
-            .chain(elsewhere)
-            .collect();
+        let headline = headline.into_iter().filter(|(seed, _)| Some(*seed) == lowest);
+        for moment in headline.flat_map(|(_, moments)| moments).chain(elsewhere) {
+            // As rows, a moment that is given twice is kept once.
+            if !results.moments.contains(&moment) {
+                results.moments.push(moment);
+            }
+        }
         Ok(results)
     }
 
-    /// Writes `report.md`, `report.json`, `moments.json`, the page `report.html` and each of its figures
-    /// as `figures/NAME.svg` into `folder`, which is created if missing. Existing files are replaced; other `.svg`
-    /// files in `figures` are removed.
+    /// Writes `report.md`, `report.json`, `moments.json`, the page `report.html` and its `figures/comparison.svg` into
+    /// `folder`, which is created if missing. Existing files are replaced.
     ///
     /// # Errors
-    /// When the folder or a file cannot be written, or a figure cannot be drawn.
+    /// When the folder or a file cannot be written, or a moment is wrong.
     pub fn save(&self, folder: &Path) -> Result<(), DdlError> {
         let figures = folder.join("figures");
         std::fs::create_dir_all(&figures).map_err(|error| DdlError::io(&figures, error))?;
@@ -83,12 +83,13 @@ impl Results {
             report: &self.report,
             moments: &self.moments,
         };
-        let drawn = page.figures()?;
-        for (name, svg) in &drawn {
-            write_atomically(&figures.join(name), svg.as_bytes())?;
+        let file = figures.join("comparison.svg");
+        match page.comparison()? {
+            Some(svg) => write_atomically(&file, svg.as_bytes())?,
+            // That of an earlier report could be mistaken for one of this report.
+            None if file.exists() => std::fs::remove_file(&file).map_err(|error| DdlError::io(&file, error))?,
+            None => {}
         }
-        // Figures of an earlier report could be mistaken for those of this one.
-        remove_others(&figures, &drawn)?;
         write_atomically(&folder.join("report.html"), page.to_html()?.as_bytes())
     }
 }
@@ -101,16 +102,4 @@ fn read_moments(run: &RunDirectory) -> Result<Vec<ForecastSnapshot>, DdlError> {
     } else {
         Ok(Vec::new())
     }
-}
-
-fn remove_others(folder: &Path, drawn: &[(String, String)]) -> Result<(), DdlError> {
-    let failed = |error| DdlError::io(folder, error);
-    for entry in std::fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        let is_kept = drawn.iter().any(|(name, _)| path.ends_with(name));
-        if path.extension().is_some_and(|e| e == "svg") && !is_kept {
-            std::fs::remove_file(&path).map_err(|error| DdlError::io(&path, error))?;
-        }
-    }
-    Ok(())
 }

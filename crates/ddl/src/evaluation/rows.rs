@@ -85,7 +85,7 @@ impl ResultRows<'_> {
                 conditions.forecaster.clone_from(&one.forecaster);
                 rows.push(ResultRow::score(conditions, &windows, &of_rule)?);
             }
-            rows.extend(baseline::measure(&plain, &windows, baseline::NOISE_SEED)?);
+            rows.extend(baseline::measure(&plain, &windows)?);
         }
         Ok(rows)
     }

@@ -36,7 +36,7 @@ pub(crate) struct Settings {
     pub(crate) data: Option<PathBuf>,
     pub(crate) device: DeviceChoice,
     pub(super) cargo_profile: String,
-    pub(super) epochs: usize,
+    pub(crate) epochs: usize,
     /// Pedestrians trained on in each epoch; `None` for the number of the recipe.
     pub(crate) train_pedestrians: Option<usize>,
     /// Batches that the proposal network is trained on; `None` for the default of `ddl train`.
@@ -204,7 +204,7 @@ impl Plan {
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
             text => text.with_context(|| format!("cannot read {}", file.display()))?,
         };
-        let damaged = || format!("{} is damaged: delete it or choose another --out", file.display());
+        let damaged = || format!("{} is damaged: choose another --out", file.display());
         let PlanLayout { format } = serde_json::from_slice(&text).with_context(damaged)?;
         ensure!(
             format == FORMAT,

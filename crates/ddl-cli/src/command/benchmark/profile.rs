@@ -26,12 +26,12 @@ impl fmt::Display for Profile {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Work {
+pub(crate) struct Work {
     /// Number of folds: the first ones of the convention.
     pub(super) folds: usize,
     pub(super) proposal_steps: Option<u64>,
     pub(super) test_pedestrians: Option<usize>,
-    pub(super) epochs: usize,
+    pub(crate) epochs: usize,
     pub(super) train_pedestrians: Option<usize>,
     pub(super) optimiser: Option<Optimiser>,
 }
@@ -77,7 +77,7 @@ impl Profile {
         }
     }
 
-    pub(super) fn work(self, recipe: Recipe) -> Work {
+    pub(crate) fn work(self, recipe: Recipe) -> Work {
         let (folds, test_pedestrians) = match self {
             Self::Smoke => (2, Some(150)),
             Self::Quick => (5, Some(2500)),

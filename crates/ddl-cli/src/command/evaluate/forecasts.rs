@@ -5,8 +5,8 @@ use crate::command::test_windows::{TestWindows, ensure_scene_of_star};
 use anyhow::Context as _;
 use clap::Args;
 use ddl::data::{Convention, WindowRule};
+use ddl::eval::Conditions;
 use ddl::eval::external::{self, Coverage, ExternalFormat};
-use ddl::eval::{Conditions, baseline};
 use ddl::report::{Report, gallery};
 use ddl::{BuiltinModel, Protocol, Results};
 use std::path::{Path, PathBuf};
@@ -87,7 +87,7 @@ impl OtherProgram {
                 commit: commit.to_owned(),
                 ..Conditions::new(convention, rule, protocol, &*fold, name)
             };
-            rows.extend(external::measure(&conditions, &matched, baseline::NOISE_SEED)?);
+            rows.extend(external::measure(&conditions, &matched)?);
         }
         let report = Report::new(format!("{name} on {fold}"), rows)?;
         if let Some(folder) = &self.out {

@@ -1,7 +1,7 @@
 //! Packs the models of a finished benchmark together with their results, as the built-in models.
 
 use crate::command::benchmark::{Method, Plan, Profile, Task};
-use crate::command::pack::one_model;
+use crate::command::pack::pack_model;
 use crate::command::recipe::Recipe;
 use anyhow::{Context as _, ensure};
 use ddl::Protocol;
@@ -47,7 +47,7 @@ pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::R
     for task in &tasks {
         let name = format!("{}.safetensors", task.fold);
         let run = task.run_folder(benchmark);
-        let numbers = one_model::pack(&run, &work.path().join(&name))?;
+        let numbers = pack_model(&run, &work.path().join(&name))?;
         let bytes = std::fs::read(work.path().join(&name))?;
         ensure!(
             bytes.len() <= MOST_BYTES,
@@ -73,6 +73,7 @@ pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::R
 
 fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
     let settings = &plan.settings;
+    let whole = Profile::Paper.work(Recipe::Recommended).epochs;
     ensure!(
         settings.convention == Convention::Star,
         "the built-in models are trained on star data, but this benchmark is of {} data",
@@ -81,11 +82,13 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
     ensure!(
         settings.recipe.name == Recipe::Recommended
             && settings.profile == Profile::Paper
+            && settings.epochs == whole
             && settings.train_pedestrians.is_none(),
         "the built-in models are of the whole recommended recipe (--profile paper), but this benchmark is of profile \
-         {}, recipe {}{}",
+         {}, recipe {}, {} epochs{}",
         settings.profile,
         settings.recipe.name,
+        settings.epochs,
         settings.train_pedestrians.map_or(String::new(), |pedestrians| format!(
             ", {pedestrians} pedestrians per epoch"
         )),

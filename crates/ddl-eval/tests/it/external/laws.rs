@@ -2,8 +2,8 @@
 
 use ddl_core::Forecast;
 use ddl_data::{OBSERVED, Position, Window};
-use ddl_eval::Scores;
 use ddl_eval::external::{self, Coverage, ExternalFormat};
+use ddl_eval::{Protocol, Scores};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use serde_json::Value;
@@ -102,7 +102,7 @@ proptest! {
             let matched = external::read_from(
                 line.as_bytes(), "f", ExternalFormat::JsonLines, &windows, Coverage::Intersection,
             ).unwrap();
-            let alone = Scores::evaluate_among(&matched.windows, &matched.full_windows, &matched.forecasts).unwrap();
+            let alone = Scores::under(Protocol::Fair, &matched.windows, &matched.full_windows, &matched.forecasts).unwrap();
             truly += alone.true_collision_rate;
             into_truth += alone.true_neighbour_collision_rate.unwrap();
             categories += alone.categories.iter().map(|c| c.pedestrians).sum::<usize>();

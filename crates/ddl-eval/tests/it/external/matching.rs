@@ -96,7 +96,7 @@ fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
             test_subset: named.map(str::to_owned),
             ..conditions(Protocol::Fair)
         };
-        let rows = external::measure(&conditions, &matched, 1).unwrap();
+        let rows = external::measure(&conditions, &matched).unwrap();
         assert_eq!(rows[0].conditions.forecaster, "mine");
         let of_all = rows[1].conditions.test_subset.clone();
         assert_eq!(rows[0].conditions.test_subset, of_all);
@@ -171,7 +171,7 @@ fn baselines_see_whom_nobody_forecast() {
     };
     let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
     let matched = of(&windows, &text, Coverage::Intersection).unwrap();
-    let rows = external::measure(&conditions(Protocol::Single), &matched, 1).unwrap();
+    let rows = external::measure(&conditions(Protocol::Single), &matched).unwrap();
     // 2 has no forecast.
     assert!(rows[0].scores.collision_rate.abs() < f64::EPSILON);
     let mut forces = rows.iter();
@@ -186,7 +186,7 @@ fn baselines_see_whom_nobody_forecast() {
 #[test]
 fn the_protocol_published_is_refused_with_the_reason() {
     let matched = read(&whole(), ExternalFormat::JsonLines, Coverage::Whole).unwrap();
-    let error = external::measure(&conditions(Protocol::Published), &matched, 1).unwrap_err();
+    let error = external::measure(&conditions(Protocol::Published), &matched).unwrap_err();
     assert!(matches!(error, ExternalError::Published));
     assert!(error.to_string().contains("the forecaster chooses the goal"));
 }
@@ -266,7 +266,7 @@ fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
     }
     let measure = |text: &str| {
         let matched = of(&far, text, Coverage::Intersection).unwrap();
-        external::measure(&conditions(Protocol::Fair), &matched, 1)
+        external::measure(&conditions(Protocol::Fair), &matched)
     };
     for (text, expected) in [
         (swapped, "if x and y were exchanged"),
