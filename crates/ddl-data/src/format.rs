@@ -1,7 +1,7 @@
 //! File formats of recordings: parsers from text to a checked [`Recording`]. A parser refuses anything that it does not
-//! understand, and names file, line and field. The order of the rows does not matter. Only TrajNet++ and
-//! Edinburgh allow lines of other kinds, and only TrajNet++ overlapping scenes that repeat a track; text may have further
-//! columns and comments.
+//! understand, and names file, line and field. The order of the rows does not matter. Only TrajNet++ and Edinburgh
+//! allow lines of other kinds, and only TrajNet++ overlapping scenes that repeat a track; text may have further columns
+//! and comments.
 
 mod choice;
 mod column_names;

@@ -102,7 +102,8 @@ proptest! {
             let matched = external::read_from(
                 line.as_bytes(), "f", ExternalFormat::JsonLines, &windows, Coverage::Intersection,
             ).unwrap();
-            let alone = Scores::under(Protocol::Fair, &matched.windows, &matched.full_windows, &matched.forecasts).unwrap();
+            let (windows, full_windows) = (&matched.windows, &matched.full_windows);
+            let alone = Scores::under(Protocol::Fair, windows, full_windows, &matched.forecasts).unwrap();
             truly += alone.true_collision_rate;
             into_truth += alone.true_neighbour_collision_rate.unwrap();
             categories += alone.categories.iter().map(|c| c.pedestrians).sum::<usize>();
