@@ -11,7 +11,7 @@ pub struct StepReport {
     pub done: usize,
     /// Steps in an epoch.
     pub steps_per_epoch: usize,
-    /// Mean loss of the batch, square metres.
+    /// Mean loss of the batch: m² of next steps, m of whole walks.
     pub loss: f64,
     /// The report of the epoch, after its last step.
     pub finished_epoch: Option<EpochReport>,
@@ -22,7 +22,7 @@ pub struct StepReport {
 pub struct EpochReport {
     /// Counted from 1. Number 0 is a measurement before the first step, with neither loss nor batches.
     pub epoch: usize,
-    /// Mean of the batches' losses, square metres.
+    /// Mean of the losses of its batches: m² of next steps, m of whole walks.
     pub loss: f64,
     /// Batches in the epoch.
     pub batches: usize,
