@@ -58,12 +58,10 @@ fn an_error_changes_nothing() {
     let pedestrians = |frame: i64| frames[&frame].clone();
     let fails = Cell::new(false);
     let model = Made(|windows: &[Window]| {
-        let failed = || Err(ForecastError::model("made", "on demand"));
         if fails.get() {
-            failed()
-        } else {
-            ConstantVelocity::LastStep.forecast_all(windows)
+            return Err(ForecastError::model("made", "on demand"));
         }
+        ConstantVelocity::LastStep.forecast_all(windows)
     });
     let mut live = LiveForecaster::with_tracks(&model, tracks());
     live.push(0, pedestrians(0)).unwrap();

@@ -62,7 +62,7 @@ pub(crate) fn files(path: &Path) -> Result<(Vec<PathBuf>, Option<String>), LogEr
     }
     let note = others.first().map(|other| {
         let (count, name) = (others.len(), other.display());
-        format!("{METADATA} does not list {name}, and it is not read ({count} such files)")
+        format!("MCAP files that {METADATA} does not list are not read: {count}, first {name}")
     });
     Ok((files, note))
 }

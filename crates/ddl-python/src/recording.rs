@@ -44,7 +44,7 @@ fn on_clock(rows: Tracks, fps: Option<f64>, frame_step: Option<i64>) -> PyResult
             "the rows have times, and fps or frame_step gives a rate of frame numbers; leave it out",
         ));
     }
-    // A rate that is none has an error in the words of Python.
+    // `TimedRecording` names seconds per frame in its error; this one names `fps`.
     fps.map(clock_of_rate).transpose()?;
     let given = TrackUnits {
         fps,

@@ -182,7 +182,7 @@ def test_what_cannot_be_read_is_named(program, folder, tmp_path):
     assert "metadata.yaml lists bag.mcap, which is missing" in error("forecast", tmp_path / "bag")
     (tmp_path / "bag/bag.mcap").write_bytes(whole)
     unlisted = run(program, "data", tmp_path / "bag", check=True).stderr
-    assert "metadata.yaml does not list" in unlisted and "other.mcap, and it is not read (1 such files)" in unlisted
+    assert "MCAP files that metadata.yaml does not list are not read: 1, first" in unlisted and "other.mcap" in unlisted
     words = "MCAP has no place for --certificate and --region"
     for option in [["--certificate"], ["--region", "0.9"]]:
         assert words in error("forecast", folder / "ZSTD.mcap", *option, "-o", tmp_path / "x.mcap")

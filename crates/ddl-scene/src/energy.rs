@@ -70,7 +70,7 @@ static LEARNED: LazyLock<Option<Energy>> = LazyLock::new(|| serde_json::from_str
 pub(crate) struct PairEnergy {
     /// Distance (m) that counts as 1 in `conflict`.
     pub(crate) near: f32,
-    /// From this distance (m) on distances count: the radius of who follows a plan.
+    /// Radius (m) of who follows a plan, which is subtracted from distances.
     pub(crate) radius: f32,
     conflict: [f32; 5],
     /// Strength and scale of walking together.

@@ -14,7 +14,7 @@ pub(crate) struct Hypotheses {
     paths: [Vec<f32>; 2],
     /// Largest distance from the present position, metres.
     pub(crate) reach: f64,
-    /// Distances are measured from this far around the position, metres; 0 for a pedestrian.
+    /// Radius of who follows a plan, metres; 0 for a pedestrian. Distances are measured from its edge.
     pub(crate) radius: f64,
 }
 

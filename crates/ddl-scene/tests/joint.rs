@@ -179,7 +179,7 @@ proptest! {
         let (window, forecast) = scene(&[([0.0, 0.0], 0.0, 1.2)], &[1]);
         let mixture = JointMixture::of(&window, &forecast, Some(&standing([x, 0.0])), None);
         prop_assert!(marginal(&mixture, 0)[0] < 0.1, "{:?}", marginal(&mixture, 0));
-        // A metre around a position aside keeps as far away as a position in the way.
+        // A plan aside is avoided if its radius reaches into the way.
         let wide = |radius| Plan::new(vec![PlanPoint { time: 0.0, position: [x, 1.4], radius }]).unwrap();
         let straight = |radius| marginal(&JointMixture::of(&window, &forecast, Some(&wide(radius)), None), 0)[0];
         prop_assert!(straight(1.4) < 0.5 * straight(0.0), "{} {}", straight(1.4), straight(0.0));

@@ -26,9 +26,9 @@ MOST_WORDS = 100_000
 class Live:
     """Forecasts for each frame of one camera or robot.
 
-    Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same rows, except for regions and
-    weights, which adapt to the observations so that they keep their share in this place too (those of
-    joint futures do not).
+    Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same rows (with words as ids, their values
+    up to rounding), except for regions and weights, which adapt to the observations so that they keep their share in
+    this place too (those of joint futures do not).
 
     Parameters
     ----------

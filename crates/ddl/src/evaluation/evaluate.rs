@@ -316,13 +316,13 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Ok(Forecasts { model, lines })
         })?;
         let (name, goals) = (model.name(), model.goal_model().words());
-        let (named, on) = (variants.iter().zip(forecasts.model), self.request.on);
+        let chosen = match self.request.on {
+            Split::Test => "best kept epoch on the TEST windows of the headline rule",
+            Split::Validation => "best kept epoch on the VALIDATION windows of the headline rule",
+        };
+        let named = variants.iter().zip(forecasts.model);
         let mut named: Vec<_> = named
             .map(|(OracleVariant { change, .. }, forecasts)| {
-                let chosen = match on {
-                    Split::Test => "best kept epoch on the TEST windows of the headline rule",
-                    Split::Validation => "best kept epoch on the VALIDATION windows of the headline rule",
-                };
                 let selection = change.map_or(chosen, |_| words::selection(None));
                 NamedForecasts::model(&name, forecasts, *change, goals.clone(), selection)
             })

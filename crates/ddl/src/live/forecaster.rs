@@ -105,7 +105,7 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// Gives names to pedestrians of the next frame: their windows have them.
+    /// Names pedestrians of the next frame. Its window has these names.
     pub fn name(&mut self, names: &PedestrianNames) {
         self.watch.tracks.name(names);
     }
