@@ -1,4 +1,4 @@
-"""Opens every page of the guide in a browser: no network request, no error or warning, no horizontal overflow.
+"""Opens every page of the guide in a browser: no request, error, warning or sideways scrolling; readable colours.
 
     check_site.py FOLDER --browser /path/to/chromium --screenshots FOLDER
 
@@ -13,8 +13,9 @@ from playwright.sync_api import sync_playwright
 
 SIZES = {"wide": {"width": 1280, "height": 900}, "narrow": {"width": 390, "height": 844}}
 KEPT = ["index.html"] + [
-    f"guide/{page}.html" for page in ("index", "start", "python", "benchmark", "extending", "troubleshooting")
+    f"guide/{page}.html" for page in ("index", "python", "program", "results", "extending", "troubleshooting")
 ]
+CONTRAST = (pathlib.Path(__file__).parent / "contrast.js").read_text()
 
 
 def visit(browser, path, size, scheme):
@@ -38,29 +39,8 @@ def visit(browser, path, size, scheme):
         "[...document.images].filter((image) => image.complete && !image.naturalWidth).map((image) => image.src)"
     )
     faults.extend(f"missing picture: {source}" for source in broken)
+    faults.extend(f"contrast {fault}" for fault in page.evaluate(CONTRAST)["faults"])
     return context, page, [f"{path.name}, {size}, {scheme}: {fault}" for fault in faults]
-
-
-def ratio(page, selector):
-    """Contrast of the first matching element's text with its background (WCAG 2)."""
-    return page.evaluate(
-        """(selector) => {
-            const element = document.querySelector(selector);
-            const numbers = (colour) => colour.match(/[\\d.]+/g).map(Number);
-            let behind = element;
-            while (behind && (numbers(getComputedStyle(behind).backgroundColor)[3] ?? 1) === 0)
-                behind = behind.parentElement;
-            const light = (colour) => {
-                const linear = (c) => (c /= 255) <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
-                const [r, g, b] = numbers(colour).slice(0, 3).map(linear);
-                return 0.2126 * r + 0.7152 * g + 0.0722 * b;
-            };
-            const background = getComputedStyle(behind ?? document.documentElement).backgroundColor;
-            const pair = [getComputedStyle(element).color, background].map(light);
-            return (Math.max(...pair) + 0.05) / (Math.min(...pair) + 0.05);
-        }""",
-        selector,
-    )
 
 
 def main():
@@ -73,6 +53,8 @@ def main():
     pages = [site / "index.html", *sorted((site / "guide").glob("*.html"))]
     pages = [page for page in pages if page.name != "toc.html"]
     arguments.screenshots.mkdir(parents=True, exist_ok=True)
+    missing = sorted(set(KEPT) - {page.relative_to(site).as_posix() for page in pages})
+    assert not missing, f"no pages {missing}"
     faults, visits = [], 0
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=arguments.browser, args=["--no-sandbox"])
@@ -87,12 +69,6 @@ def main():
                 if name in KEPT:
                     picture = name.replace("/", "-").removesuffix(".html")
                     page.screenshot(path=arguments.screenshots / f"{picture}-{size}-{scheme}.png")
-                    for selector in ("main p", "main a", "main pre code", "main td"):
-                        if page.query_selector(selector) and ratio(page, selector) < 4.5:
-                            faults.append(
-                                f"{name}, {scheme}: the text of `{selector}` has a contrast of "
-                                f"{ratio(page, selector):.1f}"
-                            )
                 context.close()
         # The search must work from the file system, too.
         context, page, _ = visit(browser, site / "guide" / "index.html", "wide", "light")
