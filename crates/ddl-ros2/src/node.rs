@@ -114,7 +114,9 @@ impl Forecasting<'_> {
             None => {}
         }
         self.health.skipped = self.place.skipped();
-        self.place.save()
+        // A memory that cannot be written costs no forecast.
+        self.place.save().unwrap_or_else(|error| self.health.fault(&error));
+        Ok(())
     }
 
     fn move_into_fixed_frame(&mut self, observed: &mut Observed) -> anyhow::Result<()> {
