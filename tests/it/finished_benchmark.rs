@@ -4,7 +4,7 @@
 use ddl::data::Convention;
 use ddl::eval::{Conditions, baseline};
 use ddl::report::Report;
-use ddl::{Ddl, DeviceChoice, Protocol, Variant};
+use ddl::{Ddl, DeviceChoice, EvaluationRequest, Protocol, Variant};
 use ddl_tests::place::{Place, json};
 use ddl_tests::{crowd, drawn_model, folder_contents};
 use serde_json::{Value, json};
@@ -119,6 +119,27 @@ fn the_main_tables_hold_the_numbers_of_the_report() {
     let said = place.run(COLLECT).stderr;
     assert!(said.contains("report.md") && !said.contains("summary.md"), "{said}");
     assert!(!place.at("summary.md").exists());
+}
+
+#[test]
+fn results_on_different_recordings_of_one_name_are_not_joined() {
+    let place = benchmark("paper", Convention::Star, &FOLDS[..2]);
+    let runs = ["eth-full-1/run", "hotel-full-1/run"];
+    let report = format!("report {} --out joined", runs.join(" "));
+    for (sha256, is_same) in [("ab", true), ("cd", false)] {
+        for (run, sha256) in runs.into_iter().zip(["ab", sha256]) {
+            let recording = json!({"name": "students", "frame_step": 10, "sha256": sha256});
+            let record = json!({
+                "request": EvaluationRequest::new(vec![Protocol::Fair]), "recordings": [recording], "device": "cpu",
+            });
+            place.write(&format!("{run}/evaluation.json"), record.to_string());
+        }
+        if is_same {
+            place.ok(&report);
+        } else {
+            place.fails(&report, &[runs[0], runs[1], "students"]);
+        }
+    }
 }
 
 #[test]

@@ -28,10 +28,10 @@ struct EvaluationRecord {
 }
 
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct MeasuredRecording {
-    name: String,
+pub(crate) struct MeasuredRecording {
+    pub(crate) name: String,
     frame_step: i64,
-    sha256: String,
+    pub(crate) sha256: String,
 }
 
 /// 1: with the row of the packed model. 2: the central goal is drawn towards the extrapolated last step. 3: the
@@ -100,6 +100,11 @@ pub fn save_evaluation(
     write_atomically(&run.report(), json.as_bytes())?;
     write_compact_json(&run.moments(), &moments)?;
     write_json(&record, &EvaluationRecord::new(model, dataset, request))
+}
+
+/// The recordings that a run was evaluated on; empty without a record of this version.
+pub(crate) fn measured_recordings(run: &RunDirectory) -> Vec<MeasuredRecording> {
+    read_json(&record_file(run)).map_or_else(|_| Vec::new(), |record: EvaluationRecord| record.recordings)
 }
 
 fn record_file(run: &RunDirectory) -> PathBuf {
