@@ -88,6 +88,8 @@ pub enum DdlError {
     Patience { patience: usize, validation: f64 },
     #[error("{field} = {share} is out of range: 0 to 1")]
     GoalShare { field: &'static str, share: f64 },
+    #[error("the query of the goals reads the first future position: goals of a forecast need the query `observed`")]
+    GoalQuery,
     #[error(
         "the training recordings hold {tracks} tracks of 20 steps, but the published goal estimator, which evaluation \
          also runs, retrieves {experts}; train on more or longer recordings (the validation part does not count)"

@@ -75,7 +75,6 @@ impl GoalModel {
         let network = match &config.goals.proposal {
             None => None,
             Some(recipe) => {
-                recipe.network.check()?;
                 enough_weights::require(&run.proposal(), recipe.network.min_weight_count())?;
                 let origin = config.goals_origin();
                 let read = |layout: &_| load_weights(layout, &origin, &run.proposal());
@@ -93,13 +92,8 @@ impl GoalModel {
         network: Option<Box<dyn ProposeEndpoints>>,
     ) -> Result<Self, DdlError> {
         let library = experts::load(&config.goals_origin(), config.data.pedestrians, &run.experts())?;
-        let params = GoalEstimatorParams {
-            query: QuerySpan::Observed,
-            ..config.goals.retrieval.clone()
-        };
-        params.check()?;
-        let estimator =
-            GoalEstimator::new(params, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
+        let estimator = GoalEstimator::new(config.goals.retrieval.clone(), library)
+            .map_err(|error| experts::unusable(&error, &run.experts()))?;
         let tracks = estimator.library().tracks();
         let motions = TrainingMotions::learn(tracks, config.star.time_step);
         let fingerprints = fingerprints_of(&run)?;
@@ -132,7 +126,6 @@ impl GoalModel {
             motions,
             fingerprints,
         } = unpacked;
-        config.goals.retrieval.check()?;
         let goals = Self {
             source: source.clone(),
             config,

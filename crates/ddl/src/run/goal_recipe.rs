@@ -1,7 +1,7 @@
 //! The settings of the goals of a run.
 
 use crate::error::DdlError;
-use ddl_goal::GoalEstimatorParams;
+use ddl_goal::{GoalEstimatorParams, QuerySpan};
 use ddl_network::{ProposalConfig, ProposalTraining};
 use serde::{Deserialize, Serialize};
 
@@ -88,9 +88,12 @@ impl GoalRecipe {
     /// Checks every parameter.
     ///
     /// # Errors
-    /// The first parameter that is out of range.
+    /// The first parameter that is out of range, or a query that reads the future.
     pub fn check(&self) -> Result<(), DdlError> {
         self.retrieval.check()?;
+        if self.retrieval.query != QuerySpan::Observed {
+            return Err(DdlError::GoalQuery);
+        }
         if let Some(proposal) = &self.proposal {
             proposal.network.check()?;
             proposal.training.check()?;
@@ -125,5 +128,18 @@ impl GoalRecipe {
                 proposal.retrieved_share
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn goals_of_forecasts_read_no_future() {
+        let mut recipe = GoalRecipe::retrieved(1);
+        assert!(recipe.check().is_ok());
+        recipe.retrieval = GoalEstimatorParams::published();
+        assert!(matches!(recipe.check(), Err(DdlError::GoalQuery)));
     }
 }

@@ -184,7 +184,6 @@ fn ensure_patience(request: &TrainingRequest, fold: &Fold<'_>, rule: WindowRule)
 /// Evaluation also runs the published estimator, which retrieves this many tracks.
 fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), DdlError> {
     let (published, retrieval) = (GoalEstimatorParams::published(), &goals.retrieval);
-    retrieval.check()?;
     let (tracks, experts) = (
         windows.iter().map(Window::len).sum::<usize>(),
         match retrieval.frame {
