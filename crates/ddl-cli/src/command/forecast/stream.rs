@@ -202,13 +202,12 @@ impl StreamOptions {
         let on_terminal = file_of(self.output.as_deref()).is_none() && std::io::stdout().is_terminal();
         if on_terminal && lines > LOOKED_THROUGH {
             tell(format_args!(
-                "note: {lines} lines; --output FILE writes them to a file, --last and --one reduce them, `ddl view` \
-                 shows them"
+                "note: {lines} lines; --output FILE writes them to a file, --last gives those of the last frame \
+                 alone, `ddl view` shows forecasts"
             ));
         } else if bytes > LARGE {
             tell(format_args!(
-                "note: {} MiB, because all pedestrians are forecast from every frame; --last and --one reduce the \
-                 output",
+                "note: {} MiB, because all pedestrians are forecast from every frame; --last gives the last frame alone",
                 bytes >> 20
             ));
         }
