@@ -2,6 +2,10 @@
 //! coordinates lose no digits.
 
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
+use std::array;
+
+/// `[axis][t]` relative to the present position of the pedestrian, metres.
+pub(crate) type Path = [[f32; HORIZON + 1]; 2];
 
 /// The paths of one pedestrian.
 #[derive(Debug, Clone)]
@@ -76,16 +80,15 @@ impl Hypotheses {
         &self.paths[axis][t * count..][..count]
     }
 
-    /// The path of hypothesis `k`, `[t]` of `[x, y]` relative to the present position.
-    pub(crate) fn path(&self, k: usize) -> [[f32; 2]; HORIZON + 1] {
-        std::array::from_fn(|t| [0, 1].map(|axis| self.at(axis, t)[k]))
+    /// The path of hypothesis `k`.
+    pub(crate) fn path(&self, k: usize) -> Path {
+        [0, 1].map(|axis| array::from_fn(|t| self.at(axis, t)[k]))
     }
 
-    /// The path of a mixture of the hypotheses, `[t]` of `[x, y]` relative to the present position.
-    pub(crate) fn mean(&self, shares: &[f32]) -> [[f32; 2]; HORIZON + 1] {
-        std::array::from_fn(|t| {
-            [0, 1].map(|axis| self.at(axis, t).iter().zip(shares).map(|(x, share)| x * share).sum())
-        })
+    /// The path of a mixture of the hypotheses.
+    pub(crate) fn mean(&self, shares: &[f32]) -> Path {
+        let mean = |axis: usize, t: usize| self.at(axis, t).iter().zip(shares).map(|(x, share)| x * share).sum();
+        [0, 1].map(|axis| array::from_fn(|t| mean(axis, t)))
     }
 }
 

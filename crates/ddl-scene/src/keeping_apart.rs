@@ -5,18 +5,16 @@
 //! the fewest others, the one nearest to the mean. Two who are that close already stay as they are: they collide on
 //! every path, because the present counts.
 
-use crate::hypotheses::{Hypotheses, least_squared};
+use crate::hypotheses::{Hypotheses, Path, least_squared};
 use crate::pairs::{Pair, neighbours};
 use ddl_core::HORIZON;
+use std::array;
 
 /// Rounds in which paths that collide are replaced.
 const ROUNDS: usize = 3;
 /// Paths are kept apart by this multiple of the distance at which they collide, because the flow to a mean goal is not
 /// exactly the mean of the paths.
 const MARGIN: f32 = 1.05;
-
-/// `[t]` of `[x, y]` relative to the present position, metres.
-type Path = [[f32; 2]; HORIZON + 1];
 
 /// Changes the shares of the hypotheses of each pedestrian, `[N][H]`, where paths of a pair collide.
 pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&mut [f32]]) {
@@ -26,9 +24,7 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
         .map(|(one, shares)| one.mean(&shares[..one.count()]));
     let means: Vec<Path> = means.collect();
     let mut paths = means.clone();
-    let collide = |pair: &Pair, first: &Path, second: &Path| {
-        apart_squared(people, pair, first, second) < (MARGIN * pair.energy.near + pair.energy.radius).powi(2)
-    };
+    let collide = |pair: &Pair, first: &Path, second: &Path| collide(people, pair, first, second);
     let mut partners = None;
     for _ in 0..ROUNDS {
         let mut changed = false;
@@ -37,7 +33,8 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
                 continue;
             }
             let partners = partners.get_or_insert_with(|| neighbours(people.len(), pairs));
-            let collisions = |i: usize, path: &Path| {
+            // Those beyond `most` are not counted: a candidate that collides as often as now is of no use.
+            let collisions = |i: usize, path: &Path, most: usize| {
                 let with = |&&(pair, other): &&(usize, usize)| {
                     let pair = &pairs[pair];
                     if pair.first == i {
@@ -46,16 +43,16 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
                         collide(pair, &paths[other], path)
                     }
                 };
-                partners[i].iter().filter(with).count()
+                partners[i].iter().filter(with).take(most).count()
             };
             let candidates = [pair.first, pair.second].into_iter().flat_map(|i| {
-                let now = collisions(i, &paths[i]);
+                let now = collisions(i, &paths[i], usize::MAX);
                 let possible = (0..people[i].count()).filter(move |&h| people[i].weights[h] > 0.0);
                 possible.map(move |hypothesis| (i, hypothesis, now))
             });
             let costs = candidates.filter_map(|(i, hypothesis, now)| {
                 let path = people[i].path(hypothesis);
-                let then = collisions(i, &path);
+                let then = collisions(i, &path, now);
                 (then < now).then(|| (now - then, far(&path, &means[i]), i, hypothesis))
             });
             let best = costs.min_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
@@ -72,16 +69,20 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
     }
 }
 
-/// Squared least distance (m²) of two paths of a pair, from the present on.
-fn apart_squared(people: &[Hypotheses], pair: &Pair, first: &Path, second: &Path) -> f32 {
+/// Whether two paths of a pair come too close, from the present on.
+fn collide(people: &[Hypotheses], pair: &Pair, first: &Path, second: &Path) -> bool {
+    let apart = (MARGIN * pair.energy.near + pair.energy.radius).powi(2);
     let [from, to] = [pair.first, pair.second].map(|i| people[i].present);
     let offset = [0, 1].map(|axis| (to[axis] - from[axis]) as f32);
-    let between = |t: usize| [0, 1].map(|axis| second[t][axis] + offset[axis] - first[t][axis]);
-    let squared = (0..HORIZON).map(|t| least_squared(between(t), between(t + 1)));
-    squared.fold(f32::INFINITY, f32::min)
+    let between = |axis: usize, t: usize| second[axis][t] + offset[axis] - first[axis][t];
+    let [x, y]: Path = [0, 1].map(|axis| array::from_fn(|t| between(axis, t)));
+    let squared: [f32; HORIZON] = array::from_fn(|t| least_squared([x[t], y[t]], [x[t + 1], y[t + 1]]));
+    squared.iter().any(|squared| *squared < apart)
 }
 
 /// Sum of the distances of two paths at all steps, metres.
 fn far(a: &Path, b: &Path) -> f32 {
-    a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).sum()
+    (0..=HORIZON)
+        .map(|t| (a[0][t] - b[0][t]).hypot(a[1][t] - b[1][t]))
+        .sum()
 }
