@@ -10,7 +10,7 @@ use crate::goal_set::GoalSet;
 use crate::kmeans::KMeans;
 use crate::library::ExpertLibrary;
 use crate::params::{GoalEstimatorParams, RetrievalFrame};
-use crate::span::{QuerySpan, velocities};
+use crate::span::velocities;
 
 /// Estimates the goals of pedestrians from the endpoints of similar pedestrians in a library.
 ///
@@ -54,7 +54,7 @@ pub struct GoalEstimator {
 
 #[derive(Clone, Debug)]
 enum Preparation {
-    World(Box<Retriever>, KMeans),
+    World(Box<SearchIndex<2>>, KMeans),
     Heading(Analogues),
 }
 
@@ -74,9 +74,11 @@ impl GoalEstimator {
                     let (tracks, experts) = (library.tracks().len(), params.experts);
                     return Err(GoalError::TooFewTracks { tracks, experts });
                 }
-                let retriever = Retriever::new(&library, params.gamma, params.query)?;
-                let kmeans = KMeans::new(params.clusters, params.restarts);
-                Preparation::World(Box::new(retriever), kmeans)
+                // Equations 4 and 5 of the DDL paper. The cost is the squared Euclidean distance, as in the published
+                // code (the text of the paper says Euclidean).
+                let sequences = library.of_each(|track| velocities(track, library.time_step, params.query))?;
+                let index = SearchIndex::build(&SoftDtw::new(params.gamma)?, &sequences)?;
+                Preparation::World(Box::new(index), KMeans::new(params.clusters, params.restarts))
             }
         };
         Ok(Self {
@@ -108,8 +110,9 @@ impl GoalEstimator {
         let (experts, clusters) = (self.params.experts, self.params.clusters);
         match &self.method {
             Preparation::Heading(analogues) => analogues.goals(track, experts, clusters),
-            Preparation::World(retriever, kmeans) => {
-                let experts = retriever.nearest(track, experts)?;
+            Preparation::World(index, kmeans) => {
+                let velocities = velocities(track, self.library.time_step, self.params.query)?;
+                let experts = index.nearest(&velocities, experts)?;
                 let ends: Vec<[f64; 2]> = experts.iter().map(|expert| self.library.end(expert.index)).collect();
                 let clustering = kmeans.fit(&ends, self.params.seed)?;
                 let place = |[x, y]: &[f64; 2]| [track[0][0] + x, track[0][1] + y];
@@ -146,33 +149,5 @@ impl GoalEstimator {
                 })
             })
             .collect()
-    }
-}
-
-/// Retrieval by equations 4 and 5 of the DDL paper. The cost is the squared Euclidean distance, as in the published
-/// code (the text of the paper says Euclidean).
-#[derive(Clone, Debug)]
-struct Retriever {
-    index: SearchIndex<2>,
-    time_step: f64,
-    span: QuerySpan,
-}
-
-impl Retriever {
-    fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
-        let dtw = SoftDtw::new(gamma)?;
-        let time_step = library.time_step;
-        let sequences = library.of_each(|track| velocities(track, time_step, span))?;
-        Ok(Self {
-            index: SearchIndex::build(&dtw, &sequences)?,
-            time_step,
-            span,
-        })
-    }
-
-    /// The `experts` tracks of the library nearest to `track`, nearest first, ties by index.
-    fn nearest(&self, track: &[[f64; 2]], experts: usize) -> Result<Vec<Neighbour>, GoalError> {
-        let velocities = velocities(track, self.time_step, self.span)?;
-        Ok(self.index.nearest(&velocities, experts)?)
     }
 }
