@@ -5,7 +5,7 @@ mod stable_euler;
 
 use nalgebra::SVector;
 
-use crate::{error::DynamicsError, flow::Flow, real::Real, state::State};
+use crate::{error::DynamicsError, flow::NaturalGradientFlow, metric_source::MetricSource, real::Real, state::State};
 
 pub use euler::Euler;
 pub use stable_euler::StableEuler;
@@ -17,9 +17,9 @@ pub trait Integrator<T: Real, const D: usize> {
     /// # Errors
     /// Those of the flow; [`DynamicsError::NotPositive`] unless `dt` is positive and finite;
     /// [`DynamicsError::NonFinite`] when the position, the velocity or the result is not finite.
-    fn step<F: Flow<T, D> + ?Sized>(
+    fn step<M: MetricSource<T, D>>(
         &self,
-        flow: &F,
+        flow: &NaturalGradientFlow<T, D, M>,
         state: &State<T, D>,
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError>;

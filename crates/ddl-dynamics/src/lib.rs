@@ -59,7 +59,7 @@ pub use nalgebra;
 
 pub use attractor::Attractor;
 pub use error::DynamicsError;
-pub use flow::{Flow, NaturalGradientFlow};
+pub use flow::NaturalGradientFlow;
 pub use integrate::{Euler, Integrator, StableEuler};
 pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Violation};
 pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};

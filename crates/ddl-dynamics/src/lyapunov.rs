@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::{
     attractor::Attractor,
     error::{DynamicsError, ensure_finite, ensure_time_step},
-    flow::Flow,
+    flow::NaturalGradientFlow,
     metric::CholeskyMetric,
+    metric_source::MetricSource,
     motion_bounds::MotionBounds,
     real::Real,
     state::State,
@@ -149,8 +150,8 @@ impl<T: Real> LyapunovCertificate<T> {
     ///
     /// # Errors
     /// Those of [`new`](Self::new), and, inside [`DynamicsError::Step`], those of the flow's metric.
-    pub fn of_rollout<const D: usize, F: Flow<T, D> + ?Sized>(
-        flow: &F,
+    pub fn of_rollout<const D: usize, M: MetricSource<T, D>>(
+        flow: &NaturalGradientFlow<T, D, M>,
         path: &[SVector<T, D>],
         dt: T,
     ) -> Result<Self, DynamicsError> {

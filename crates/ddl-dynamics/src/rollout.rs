@@ -4,8 +4,9 @@ use nalgebra::SVector;
 
 use crate::{
     error::{DynamicsError, ensure_finite, ensure_time_step},
-    flow::Flow,
+    flow::NaturalGradientFlow,
     integrate::Integrator,
+    metric_source::MetricSource,
     real::Real,
     state::State,
 };
@@ -18,8 +19,8 @@ use crate::{
 /// # Errors
 /// [`DynamicsError::NotPositive`] for `dt`, [`DynamicsError::NonFinite`] for the start, and [`DynamicsError::Step`]
 /// with the step in which the flow or the integrator failed.
-pub fn rollout<T, const D: usize, F, I>(
-    flow: &F,
+pub fn rollout<T, const D: usize, M, I>(
+    flow: &NaturalGradientFlow<T, D, M>,
     integrator: &I,
     start: SVector<T, D>,
     dt: T,
@@ -27,7 +28,7 @@ pub fn rollout<T, const D: usize, F, I>(
 ) -> Result<Vec<SVector<T, D>>, DynamicsError>
 where
     T: Real,
-    F: Flow<T, D> + ?Sized,
+    M: MetricSource<T, D>,
     I: Integrator<T, D>,
 {
     let mut positions = vec![SVector::zeros(); steps + 1];
@@ -40,8 +41,8 @@ where
 ///
 /// # Errors
 /// Those of [`rollout`]; the positions before the failing step are then valid.
-pub fn rollout_into<T, const D: usize, F, I>(
-    flow: &F,
+pub fn rollout_into<T, const D: usize, M, I>(
+    flow: &NaturalGradientFlow<T, D, M>,
     integrator: &I,
     start: SVector<T, D>,
     dt: T,
@@ -49,7 +50,7 @@ pub fn rollout_into<T, const D: usize, F, I>(
 ) -> Result<(), DynamicsError>
 where
     T: Real,
-    F: Flow<T, D> + ?Sized,
+    M: MetricSource<T, D>,
     I: Integrator<T, D>,
 {
     ensure_time_step(dt)?;

@@ -5,7 +5,8 @@ use nalgebra::SVector;
 use super::Integrator;
 use crate::{
     error::{DynamicsError, ensure_finite, ensure_time_step},
-    flow::Flow,
+    flow::NaturalGradientFlow,
+    metric_source::MetricSource,
     real::Real,
     state::State,
 };
@@ -24,9 +25,9 @@ use crate::{
 pub struct Euler;
 
 impl<T: Real, const D: usize> Integrator<T, D> for Euler {
-    fn step<F: Flow<T, D> + ?Sized>(
+    fn step<M: MetricSource<T, D>>(
         &self,
-        flow: &F,
+        flow: &NaturalGradientFlow<T, D, M>,
         state: &State<T, D>,
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError> {

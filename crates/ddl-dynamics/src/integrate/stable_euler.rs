@@ -6,7 +6,8 @@ use super::Integrator;
 use crate::{
     attractor::Attractor,
     error::{DynamicsError, ensure_finite, ensure_time_step},
-    flow::Flow,
+    flow::NaturalGradientFlow,
+    metric_source::MetricSource,
     polar::polar,
     real::Real,
     state::State,
@@ -104,9 +105,9 @@ impl StableEuler {
 }
 
 impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
-    fn step<F: Flow<T, D> + ?Sized>(
+    fn step<M: MetricSource<T, D>>(
         &self,
-        flow: &F,
+        flow: &NaturalGradientFlow<T, D, M>,
         state: &State<T, D>,
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError> {

@@ -1,8 +1,8 @@
 //! `StableEuler` lowers the distance to the goal at every step, for every input.
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, Flow, Integrator, LyapunovCertificate, NaturalGradientFlow, Real, StableEuler,
-    State, rollout,
+    Attractor, CholeskyMetric, Euler, Integrator, LyapunovCertificate, NaturalGradientFlow, Real, StableEuler, State,
+    rollout,
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
