@@ -5,7 +5,6 @@ use crate::evaluation::parts::{parts, pedestrians, scored};
 use crate::forecast::certified::Walked;
 use crate::forecast::name;
 use crate::forecast::shaped;
-use crate::forecast::walk::PathIntegrator;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
 use crate::run::directory::RunDirectory;
@@ -13,7 +12,7 @@ use ddl_core::{Forecast, ForecastError};
 use ddl_data::{Position, Window};
 use ddl_eval::Scores;
 use ddl_goal::GoalEstimator;
-use ddl_network::{ForecastWindows, NetworkFrame, Noise};
+use ddl_network::{ForecastWindows, NetworkFrame, Noise, StepRule};
 use std::path::PathBuf;
 
 /// Noise samples for the goal of a pedestrian.
@@ -95,13 +94,13 @@ impl Published {
             .iter()
             .map(|goals| goals.iter().map(|&goal| vec![goal]).collect())
             .collect();
-        let integrator = match config.frame {
-            NetworkFrame::World => PathIntegrator::PlainEuler,
-            NetworkFrame::Goal => PathIntegrator::Stable,
+        let rule = match config.frame {
+            NetworkFrame::World => StepRule::Euler,
+            NetworkFrame::Goal => StepRule::Bounded,
         };
         let rollouts = self
             .network
-            .forecast_windows(windows, &single, noise, integrator.rule(), None)
+            .forecast_windows(windows, &single, noise, rule, None)
             .map_err(|error| ForecastError::model(name::NAME, error))?;
         let rolled = rollouts.into_iter().zip(windows).zip(goals);
         rolled
@@ -115,7 +114,7 @@ impl Published {
                     shares: vec![1.0; window.len()],
                     familiarity: None,
                     config,
-                    integrator,
+                    rule,
                     window,
                     hypotheses: samples,
                     rolled_out: rollout.positions,

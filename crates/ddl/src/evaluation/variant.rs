@@ -1,9 +1,8 @@
 //! The variants of a model that an evaluation compares, each with its goals and its motion.
 
-use crate::forecast::walk::PathIntegrator;
 use crate::model::ddl::Ddl;
 use ddl_eval::Protocol;
-use ddl_network::Objective;
+use ddl_network::{Objective, StepRule};
 
 /// A way in which the model forecasts. Each has its own row of results.
 #[derive(Debug)]
@@ -32,7 +31,7 @@ pub(crate) enum GivenGoals {
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum VariantMotion {
     /// The motion that the network shapes.
-    Shaped(PathIntegrator),
+    Shaped(StepRule),
     /// The neutral motion.
     Neutral,
     /// The model's futures of the whole scene, to their goals.
@@ -83,7 +82,7 @@ impl EvaluationVariant {
                 });
             }
         };
-        let stable = VariantMotion::Shaped(PathIntegrator::Stable);
+        let stable = VariantMotion::Shaped(StepRule::Bounded);
         for protocol in [Protocol::Fair, Protocol::Online] {
             add(protocol, GivenGoals::Own, stable, None);
         }
@@ -94,10 +93,10 @@ impl EvaluationVariant {
         add(Protocol::Joint, GivenGoals::Own, VariantMotion::Scenes, None);
         let change = said("with its hypotheses by weight, as one future each");
         add(Protocol::Joint, GivenGoals::Own, stable, change);
-        // Plain steps diverge for a network that was trained on whole paths of the stable integrator.
+        // Plain steps diverge for a network that was trained on whole paths of the stable steps.
         let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
         if network.dynamics() && learned_on_plain_steps {
-            let plain = VariantMotion::Shaped(PathIntegrator::PlainEuler);
+            let plain = VariantMotion::Shaped(StepRule::Euler);
             let change = said("with plain Euler steps");
             add(Protocol::Fair, GivenGoals::Own, plain, change);
         }

@@ -1,12 +1,12 @@
 //! Forecasts with a certificate for every hypothesis.
 
 use crate::forecast::name::NAME;
-use crate::forecast::walk::{Approach, PathIntegrator};
+use crate::forecast::walk::Approach;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError, Pace, Spread};
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
-use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
+use ddl_network::{NetworkFrame, StarConfig, StepRule, Variant, motion_bounds};
 use rayon::prelude::*;
 
 /// A forecast with a Lyapunov certificate for every hypothesis.
@@ -78,7 +78,7 @@ pub enum CertificateError {
 #[derive(Debug)]
 pub(crate) struct Walked<'a> {
     pub(crate) config: &'a StarConfig,
-    pub(crate) integrator: PathIntegrator,
+    pub(crate) rule: StepRule,
     pub(crate) window: &'a Window,
     pub(crate) hypotheses: usize,
     /// `[N][K][12]`: the path of the network's own rollout, metres; empty if the network is not used.
@@ -166,16 +166,16 @@ impl Walked<'_> {
             return Err(no_flow(self.config.variant));
         };
         let mut positions = rolled_out;
-        if let PathIntegrator::Stable = self.integrator {
+        if let StepRule::Bounded = self.rule {
             // Another path replaces each.
             positions.resize(factors.len(), [0.0; 2]);
         }
         assert_eq!(positions.len(), factors.len(), "a position for each factor");
-        let certificates = match self.integrator {
-            PathIntegrator::PlainEuler => self.each(factors, &mut positions, |approach, factors, path| {
+        let certificates = match self.rule {
+            StepRule::Euler => self.each(factors, &mut positions, |approach, factors, path| {
                 approach.certify(path, factors).map(&keep)
             })?,
-            PathIntegrator::Stable => self.each(factors, &mut positions, |approach, factors, path| {
+            StepRule::Bounded => self.each(factors, &mut positions, |approach, factors, path| {
                 let walk = approach.walk(factors)?;
                 path.copy_from_slice(&walk.positions);
                 Ok(keep(walk.certificate))

@@ -2,7 +2,6 @@
 
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
-use crate::forecast::walk::PathIntegrator;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError};
 use ddl_data::{Position, Window};
@@ -27,14 +26,12 @@ pub(crate) fn towards(
     seed: u64,
     windows: &[Window],
     goals: GuidedGoals,
-    integrator: PathIntegrator,
+    rule: StepRule,
 ) -> Result<Vec<Forecast>, ForecastError> {
     if !network.config().variant.uses_goal() {
         return without_goals(network, seed, windows);
     }
-    walked(network, windows, goals, integrator)?
-        .map(Walked::forecast)
-        .collect()
+    walked(network, windows, goals, rule)?.map(Walked::forecast).collect()
 }
 
 /// The network's rollouts to all goals. Each becomes a forecast on demand, so that the certificates of many windows are
@@ -43,7 +40,7 @@ pub(crate) fn walked<'a>(
     network: &'a dyn ForecastWindows,
     windows: &'a [Window],
     goals: GuidedGoals,
-    integrator: PathIntegrator,
+    rule: StepRule,
 ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
     let GuidedGoals { sets, familiarity } = goals;
     let goals: Vec<Vec<Vec<Position>>> = sets
@@ -56,7 +53,7 @@ pub(crate) fn walked<'a>(
         .map(|window| window.iter().map(share).collect())
         .collect();
     let rollouts = network
-        .forecast_windows(windows, &goals, Noise::Expected, integrator.rule(), Some(&shares))
+        .forecast_windows(windows, &goals, Noise::Expected, rule, Some(&shares))
         .map_err(|error| ForecastError::model(NAME, error))?;
     let shaped = rollouts.into_iter().zip(windows).zip(sets);
     let trusted = shares.into_iter().zip(familiarity);
@@ -67,7 +64,7 @@ pub(crate) fn walked<'a>(
             familiarity: Some(familiarity),
             spread: None,
             config: network.config(),
-            integrator,
+            rule,
             window,
             hypotheses: rollout.hypotheses,
             rolled_out: rollout.positions,

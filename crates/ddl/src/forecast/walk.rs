@@ -7,26 +7,8 @@ use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSource, MotionBounds, NaturalGradientFlow,
     StableEuler, State, arriving_schedule, rollout_into,
 };
-use ddl_network::StepRule;
 use nalgebra::Vector2;
 use std::cell::RefCell;
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum PathIntegrator {
-    /// Plain Euler steps as published, which may overshoot the goal.
-    PlainEuler,
-    /// `StableEuler` within bounds.
-    Stable,
-}
-
-impl PathIntegrator {
-    pub(crate) fn rule(self) -> StepRule {
-        match self {
-            Self::PlainEuler => StepRule::Euler,
-            Self::Stable => StepRule::Bounded,
-        }
-    }
-}
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Approach {

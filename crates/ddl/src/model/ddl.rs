@@ -6,7 +6,6 @@ use crate::forecast::certified::{self, CertifiedForecast, Walked};
 use crate::forecast::joint::GivenPlan;
 use crate::forecast::name::NAME;
 use crate::forecast::shaped::{self, GuidedGoals};
-use crate::forecast::walk::PathIntegrator;
 use crate::goals::model::GoalModel;
 use crate::goals::sets;
 use crate::run::config::RunConfig;
@@ -15,8 +14,8 @@ use crate::run::model_source::ModelSource;
 use ddl_core::{Forecast, ForecastError, Forecaster};
 use ddl_data::{HORIZON, Position, Window};
 use ddl_goal::GoalSet;
-use ddl_network::ForecastWindows;
 use ddl_network::weights::Weights;
+use ddl_network::{ForecastWindows, StepRule};
 
 /// A trained model, ready to forecast.
 ///
@@ -101,7 +100,7 @@ impl Ddl {
         certified::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
         let goals = self.guided(windows, goals);
-        shaped::walked(&*self.network, windows, goals, PathIntegrator::Stable)?
+        shaped::walked(&*self.network, windows, goals, StepRule::Bounded)?
             .map(Walked::certified)
             .collect()
     }
@@ -142,7 +141,7 @@ impl Ddl {
         given: Option<&'a GivenPlan>,
     ) -> Result<impl Iterator<Item = Result<Walked<'a>, ForecastError>>, ForecastError> {
         let goals = self.guided(windows, self.goals.goals(windows)?);
-        let walked = shaped::walked(&*self.network, windows, goals, PathIntegrator::Stable)?;
+        let walked = shaped::walked(&*self.network, windows, goals, StepRule::Bounded)?;
         Ok(walked.map(move |walked| walked.joint(given)))
     }
 
@@ -194,7 +193,7 @@ impl Ddl {
             let goals: Vec<Position> = sets.iter().flat_map(GoalSet::goals).copied().collect();
             Walked {
                 config,
-                integrator: PathIntegrator::Stable,
+                rule: StepRule::Bounded,
                 window,
                 hypotheses: 1,
                 rolled_out: Vec::new(),
@@ -214,10 +213,10 @@ impl Ddl {
         &self,
         windows: &[Window],
         sets: Vec<Vec<GoalSet>>,
-        integrator: PathIntegrator,
+        rule: StepRule,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let seed = self.config().training.seed;
-        shaped::towards(&*self.network, seed, windows, self.guided(windows, sets), integrator)
+        shaped::towards(&*self.network, seed, windows, self.guided(windows, sets), rule)
     }
 
     fn guided(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> GuidedGoals {
@@ -241,6 +240,6 @@ impl Forecaster for Ddl {
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = self.goals.goals(windows)?;
-        self.forecast_towards(windows, goals, PathIntegrator::Stable)
+        self.forecast_towards(windows, goals, StepRule::Bounded)
     }
 }

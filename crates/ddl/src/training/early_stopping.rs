@@ -3,7 +3,6 @@
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::forecast::shaped::{self, GuidedGoals};
-use crate::forecast::walk::PathIntegrator;
 use crate::goals::model::GoalModel;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
@@ -13,7 +12,7 @@ use crate::windows::test_set::TestSet;
 use ddl_data::{Fold, Window};
 use ddl_eval::{ScoredWindow, metric::displacement::DisplacementErrors};
 use ddl_network::weights::Weights;
-use ddl_network::{EpochReport, ForecastWindows};
+use ddl_network::{EpochReport, ForecastWindows, StepRule};
 
 /// Least number of validation pedestrians that each epoch is measured on, if available.
 const PEDESTRIANS: usize = 1000;
@@ -56,7 +55,7 @@ impl EarlyStopping {
     /// minADE over the pedestrians in metres, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
         let (scenes, goals) = (&self.scenes, self.goals.clone());
-        let forecasts = shaped::towards(network, self.seed, scenes, goals, PathIntegrator::Stable)?;
+        let forecasts = shaped::towards(network, self.seed, scenes, goals, StepRule::Bounded)?;
         let (mut sum, mut pedestrians) = (0.0, 0);
         for (window, forecast) in self.windows.iter().zip(forecasts) {
             let forecast = forecast.without_bystanders(window);
