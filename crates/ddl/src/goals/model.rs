@@ -60,7 +60,7 @@ impl GoalModel {
             let bytes = packed::bytes(source)?;
             let device = Device::open(device)?;
             let unpacked = packed::unpack(&bytes, source, device)?;
-            return Ok(Self::of_packed(source, unpacked)?.0);
+            return Ok(Self::of_packed(source, unpacked).0);
         };
         let config = run.config()?;
         if !run.has_goals(&config.goals) {
@@ -115,10 +115,7 @@ impl GoalModel {
     }
 
     /// The goals of a packed model, and its remaining contents.
-    pub(crate) fn of_packed(
-        source: &ModelSource,
-        unpacked: Unpacked,
-    ) -> Result<(Self, Box<dyn ForecastWindows>), DdlError> {
+    pub(crate) fn of_packed(source: &ModelSource, unpacked: Unpacked) -> (Self, Box<dyn ForecastWindows>) {
         let Unpacked {
             config,
             network,
@@ -133,7 +130,7 @@ impl GoalModel {
             motions,
             fingerprints,
         };
-        Ok((goals, network))
+        (goals, network)
     }
 
     /// The configuration of the run.

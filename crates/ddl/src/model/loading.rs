@@ -60,7 +60,7 @@ impl Ddl {
     fn of_packed(source: &ModelSource, device: Device) -> Result<Self, DdlError> {
         let bytes = packed::bytes(source)?;
         let unpacked = packed::unpack(&bytes, source, device)?;
-        let (goals, network) = GoalModel::of_packed(source, unpacked)?;
+        let (goals, network) = GoalModel::of_packed(source, unpacked);
         Self::with(goals, device, network)
     }
 
