@@ -7,10 +7,6 @@ use serde::{Deserialize, Serialize};
 pub struct StepReport {
     /// Epoch of the step, counted from 1.
     pub epoch: usize,
-    /// Steps done in that epoch, including this one.
-    pub done: usize,
-    /// Steps in an epoch.
-    pub steps_per_epoch: usize,
     /// Mean loss of the batch: m² of next steps, m of whole walks.
     pub loss: f64,
     /// The report of the epoch, after its last step.

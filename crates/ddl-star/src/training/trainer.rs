@@ -248,8 +248,8 @@ impl Trainer {
     fn report(&mut self, step: u64, loss: f64) -> StepReport {
         let steps_per_epoch = self.schedule.steps_per_epoch;
         let epoch = (step / steps_per_epoch as u64) as usize + 1;
-        let done = (step % steps_per_epoch as u64) as usize + 1;
-        let finished_epoch = (done == steps_per_epoch).then(|| {
+        let is_last = (step + 1).is_multiple_of(steps_per_epoch as u64);
+        let finished_epoch = is_last.then(|| {
             let report = EpochReport {
                 epoch,
                 loss: self.progress.loss_sum / steps_per_epoch as f64,
@@ -262,8 +262,6 @@ impl Trainer {
         });
         StepReport {
             epoch,
-            done,
-            steps_per_epoch,
             loss,
             finished_epoch,
         }
