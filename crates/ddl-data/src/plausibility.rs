@@ -12,7 +12,7 @@ use crate::recording::Recording;
 
 /// Faster than a pedestrian walks (m/s). If half of the steps exceed this, the positions are probably in pixels, or the
 /// steps are not 0.4 s.
-const IMPLAUSIBLE: f64 = 4.0;
+const IMPLAUSIBLE: f64 = 2.6;
 /// If the 90 % quantile of the walking speeds is below this (m/s), the frames are probably closer together than 0.4 s.
 const CREEPING: f64 = 0.6;
 /// Distance between first and last position (m) above which a track counts as walking.
@@ -29,6 +29,8 @@ const MANY_STEPS: usize = 20;
 const NARROW: f64 = 1.5;
 const CROSSED: f64 = 0.2;
 const A_CROWD: usize = 3;
+/// Share of rows at the origin that people who cross it do not have.
+const PLACEHOLDERS: f64 = 0.05;
 /// Time without any motion (s) that people do not reach, even standing, and speed before it (m/s), of a frozen track.
 const FROZEN: f64 = 4.0;
 const WALKING: f64 = 0.3;
@@ -55,6 +57,10 @@ pub enum PlausibilityWarning {
          apart, or closer?"
     )]
     Slow { brisk: f64 },
+    #[error(
+        "{rows} rows of {pedestrians} pedestrians lie exactly at (0, 0); if nobody was seen in them, leave them out"
+    )]
+    Placeholders { rows: usize, pedestrians: usize },
     #[error(
         "no pedestrian moves farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
     )]
@@ -114,6 +120,8 @@ pub(crate) struct Speeds {
     pub(crate) pedestrians: usize,
     /// The longer side of the area of all positions, m.
     pub(crate) side: f64,
+    /// Rows at the origin, and pedestrians with such rows.
+    at_zero: [usize; 2],
 }
 
 impl Speeds {
@@ -122,6 +130,10 @@ impl Speeds {
             let frame_step = self.frame_step;
             return Some(PlausibilityWarning::NoSteps { frame_step });
         };
+        let [rows, pedestrians] = self.at_zero;
+        if pedestrians > 1 && rows as f64 > PLACEHOLDERS * self.steps as f64 {
+            return Some(PlausibilityWarning::Placeholders { rows, pedestrians });
+        }
         let crosses = self.farthest > CROSSED * self.side;
         if self.farthest < STILL && self.steps >= MANY_STEPS {
             let farthest = self.farthest;
@@ -156,7 +168,13 @@ impl Recording {
         let (low, high) = self.corners();
         let mut speeds: Vec<(f64, &Observation)> = Vec::new();
         let mut walking: Vec<f64> = Vec::new();
+        let mut at_zero = [0; 2];
         for track in tracks.values() {
+            let zeros = track
+                .iter()
+                .filter(|seen| seen.position.iter().all(|x| *x == 0.0))
+                .count();
+            at_zero = [at_zero[0] + zeros, at_zero[1] + usize::from(zeros > 0)];
             let first = speeds.len();
             speeds.extend(track.iter().filter_map(|seen| {
                 let before = position_at(track, seen.frame - step, step)?;
@@ -181,6 +199,7 @@ impl Recording {
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
             pedestrians: tracks.len(),
             side: (high[0] - low[0]).max(high[1] - low[1]),
+            at_zero,
         }
     }
 }

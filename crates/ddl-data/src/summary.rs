@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::live::Completeness;
 use crate::observation::Observation;
 use crate::observe::Misfit;
-use crate::plausibility::{Fastest, OFTEN, PlausibilityWarning, Speeds, is_frozen, restarted};
+use crate::plausibility::{Fastest, OFTEN, PlausibilityWarning, is_frozen, restarted};
 use crate::recording::Recording;
 
 /// Summary of a recording, in steps of 0.4 s.
@@ -85,6 +85,8 @@ pub struct Summary {
     pub windows: usize,
     /// Pedestrians in these windows, each counted once per window: the samples for training and evaluation.
     pub to_learn_from: usize,
+    #[serde(skip)]
+    of_speeds: Option<PlausibilityWarning>,
 }
 
 /// A gap in the observations of one pedestrian.
@@ -103,21 +105,11 @@ impl Summary {
     /// Plausibility warnings; empty for a plausible recording.
     #[must_use]
     pub fn warnings(&self) -> Vec<PlausibilityWarning> {
-        let speeds = Speeds {
-            frame_step: self.frame_step,
-            steps: self.steps,
-            median: self.median_speed,
-            fastest: self.fastest.clone(),
-            brisk: self.brisk_speed,
-            farthest: self.farthest,
-            pedestrians: self.pedestrians,
-            side: (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]),
-        };
         let (count, share) = (self.frozen, self.unseen);
         let learning = self.to_learn_from == 0 && self.median_speed.is_some();
         restarted(self.restarts)
             .into_iter()
-            .chain(speeds.warning())
+            .chain(self.of_speeds.clone())
             .chain((count > 0).then_some(PlausibilityWarning::Frozen { count }))
             .chain((share >= OFTEN).then_some(PlausibilityWarning::Unseen { share }))
             .chain(learning.then_some(PlausibilityWarning::NothingToLearnFrom))
@@ -167,8 +159,7 @@ impl Recording {
     #[must_use]
     pub fn summary(&self) -> Summary {
         let (tracks, step) = (self.tracks(), self.frame_step());
-        let speeds = self.speeds(&tracks);
-        let spacing = self.usual_spacing().unwrap_or(step);
+        let (speeds, spacing) = (self.speeds(&tracks), self.usual_spacing().unwrap_or(step));
         let (low, high) = self.corners();
         let (first_frame, last_frame) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
         let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
@@ -196,6 +187,7 @@ impl Recording {
             }
         });
         Summary {
+            of_speeds: speeds.warning(),
             recording: self.name().to_owned(),
             frames: self.frames().len(),
             first_frame,

@@ -22,6 +22,23 @@ fn implausible_speeds_give_warnings() {
     assert!(matches!(warnings(walk(30.0))[..], [PlausibilityWarning::Fast { median }, ..] if median > 70.0));
     // A standing pedestrian causes no warning, even with the noise of a tracker.
     assert_eq!(warnings(walk(0.001)), []);
+    // Two who are not seen for some steps.
+    let absent = |id, t| Observation::new(t, PedestrianId(id), [0.0; 2]);
+    let seen = [
+        walk(0.52),
+        (100..120).flat_map(|t| [absent(1, t), absent(2, t)]).collect(),
+    ]
+    .concat();
+    assert!(matches!(
+        warnings(seen)[..],
+        [
+            PlausibilityWarning::Placeholders {
+                rows: 41,
+                pedestrians: 2
+            },
+            ..
+        ]
+    ));
     // A walk through a park in degrees of latitude.
     assert!(matches!(warnings(walk(5e-6))[..], [PlausibilityWarning::Still { farthest }] if farthest < 1e-3));
 }
