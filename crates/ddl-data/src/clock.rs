@@ -297,6 +297,11 @@ pub enum ClockError {
          right, and do the frame numbers count at this rate? A column of milliseconds is called time_ms"
     )]
     TooSlow { apart: f64 },
+    #[error(
+        "the rows of a pedestrian are {apart:.1e} s apart, closer than 1 ms: is the rate right? Times must count \
+         seconds (column time), or time_ms, time_us or time_ns, not days or minutes"
+    )]
+    TooFast { apart: f64 },
     #[error("frame {frame} is too large to be divided into {ticks} parts; count frames from 0")]
     Frame { frame: i64, ticks: i64 },
 }

@@ -12,6 +12,8 @@ use crate::observation::{COORDINATE_LIMIT, Observation};
 
 /// Spacing of the rows of a pedestrian (s) above which they no longer show the course of a track.
 const SLOWEST: f64 = 1.2;
+/// Closer rows of a pedestrian (s) show that times do not count seconds.
+const FASTEST: f64 = 1e-3;
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
@@ -146,6 +148,9 @@ impl Recording {
         let apart = self.usual_spacing().unwrap_or(0) as f64 / clock.frames_a_second();
         if apart > SLOWEST {
             return Err(ClockError::TooSlow { apart });
+        }
+        if apart > 0.0 && apart < FASTEST {
+            return Err(ClockError::TooFast { apart });
         }
         let mut recording = Self {
             frame_step: clock.frame_step(),

@@ -16,6 +16,8 @@ const QUOTED: usize = 40;
 /// Longest word that names a pedestrian, in bytes.
 const LONGEST_WORD: usize = 256;
 
+const DATE: &str = "a date with a time such as 2026-05-31T12:00:00.4Z";
+
 /// A field without blanks around it. Most fields have none.
 pub(super) fn trimmed(field: &str) -> &str {
     let is_letter = |byte: Option<&u8>| byte.is_none_or(u8::is_ascii_graphic);
@@ -49,8 +51,7 @@ pub(super) fn frame(text: &str, name: &str, unit: Option<TimeUnit>) -> Result<i6
 
 fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
     let Some((a_second, _)) = unit.a_second() else {
-        let wanted = "a date with a time such as 2026-05-31T12:00:00.4Z";
-        let stamp = date(text).ok_or_else(|| not_a_time("time", &quoted(text), wanted))?;
+        let stamp = date(text).ok_or_else(|| not_a_time("time", &quoted(text), DATE))?;
         let is_near = stamp.abs() < FRAME_LIMIT;
         return is_near
             .then_some(stamp)
@@ -62,10 +63,11 @@ fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
     let whole = whole.map(|number| number.div_euclid(a_second / STAMPS_A_SECOND) as f64);
     let stamp = whole.or_else(|| Some((text.parse::<f64>().ok()? * scale).round()));
     let stamp = stamp.filter(|stamp| stamp.is_finite());
-    let stamp = stamp.ok_or_else(|| not_a_time("time", &quoted(text), "a time"))?;
+    let wanted = || format!("a number, or in all rows {DATE}");
+    let stamp = stamp.ok_or_else(|| not_a_time("time", &quoted(text), &wanted()))?;
     if stamp.abs() >= FRAME_LIMIT as f64 {
-        let finer =
-            "not within 285 years of 1970; if it counts milliseconds, call the column time_ms, or time_us or time_ns";
+        let finer = "not within 285 years of 1970; if it counts milliseconds, call the column time_ms, or time_us or \
+                     time_ns; divide ticks of 100 ns";
         return Err(format!("time {} is {finer}", quoted(text)));
     }
     Ok(stamp as i64)
@@ -86,7 +88,7 @@ pub(super) fn unit_of(text: &str) -> TimeUnit {
     let text = trimmed(text);
     match text.parse::<f64>() {
         Err(_) if date(text).is_some() => TimeUnit::Dates,
-        Ok(number) if number >= 1e17 => TimeUnit::Nanoseconds,
+        Ok(number) if number >= 1e18 => TimeUnit::Nanoseconds,
         Ok(number) if number >= 1e14 => TimeUnit::Microseconds,
         Ok(number) if number >= 1e11 => TimeUnit::Milliseconds,
         _ => TimeUnit::Seconds,
