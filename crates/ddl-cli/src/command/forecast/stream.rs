@@ -207,7 +207,7 @@ impl StreamOptions {
             ));
         } else if bytes > LARGE {
             tell(format_args!(
-                "note: {} MiB, because all pedestrians are forecast from every frame; --last gives the last frame alone",
+                "note: {} MiB, because all pedestrians are forecast from every frame; --last gives the last one",
                 bytes >> 20
             ));
         }
