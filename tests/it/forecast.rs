@@ -266,21 +266,3 @@ fn regions_are_written_as_radii_and_as_discs() {
         "{refused:?}"
     );
 }
-
-#[test]
-fn a_table_has_four_decimals() {
-    let place = Place::with_model();
-    let text = place.ok("forecast --model run tracks.csv --whole");
-    let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let header = reader.headers().unwrap().clone();
-    let mut longest = 0;
-    for record in reader.records() {
-        for (name, cell) in header.iter().zip(&record.unwrap()) {
-            if ["goal_x", "goal_y", "x", "y"].contains(&name) {
-                longest = longest.max(cell.split_once('.').unwrap().1.len());
-                assert_ne!(cell, "-0.0");
-            }
-        }
-    }
-    assert_eq!(longest, 4);
-}

@@ -105,14 +105,11 @@ pub fn parse_columns(
 
 /// The observations of a file.
 fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFile, Misread> {
-    if COMPRESSED.iter().any(|magic| bytes.starts_with(magic)) {
-        let problem = "the file is compressed; unpack it, or export the spreadsheet as csv";
-        return Err(FilePlace::line(1).wrong(problem));
-    }
-    if bytes.starts_with(b"PAR1") {
-        let problem = "the file is Parquet; write it as csv first (python -c \"import pandas; \
-                       pandas.read_parquet('FILE').to_csv('FILE.csv')\"), or give its columns to the Python package";
-        return Err(FilePlace::line(1).wrong(problem));
+    if let Some((_, problem)) = OTHERS
+        .iter()
+        .find(|(first, _)| first.iter().any(|first| bytes.starts_with(first)))
+    {
+        return Err(FilePlace::line(1).wrong(*problem));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()].split(|&byte| byte == b'\n').count();
@@ -141,5 +138,35 @@ fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFi
     }
 }
 
-/// First bytes of files compressed by gzip, zip (also spreadsheets), bzip2, xz and zstd.
-const COMPRESSED: [&[u8]; 5] = [b"\x1f\x8b", b"PK\x03\x04", b"BZh", b"\xfd7zXZ", b"\x28\xb5\x2f\xfd"];
+/// First bytes of files of other kinds, and what is said of them. Zip also holds spreadsheets.
+const OTHERS: [(&[&[u8]], &str); 5] = [
+    (
+        &[b"\x1f\x8b", b"PK\x03\x04", b"BZh", b"\xfd7zXZ", b"\x28\xb5\x2f\xfd"],
+        "the file is compressed; unpack it, or export the spreadsheet as csv",
+    ),
+    (
+        &[b"PAR1"],
+        "the file is Parquet; write it as csv first (python -c \"import pandas; \
+         pandas.read_parquet('FILE').to_csv('FILE.csv')\"), or give its columns to the Python package",
+    ),
+    (
+        &[
+            b"SQLite format 3",
+            b"\x89HDF",
+            b"\x93NUMPY",
+            b"MATLAB 5.0",
+            b"\x80\x04\x95",
+            b"#ROSBAG",
+            b"\xd0\xcf\x11\xe0",
+        ],
+        "the file is binary (SQLite, HDF5, numpy, MATLAB, pickle, bag or old Excel); write its tracks as csv first",
+    ),
+    (
+        &[b"<", b"\xef\xbb\xbf<"],
+        "the file is XML or HTML; write its tracks as csv first",
+    ),
+    (
+        &[b"version https://git-lfs"],
+        "the file is a pointer of Git LFS; get its content with `git lfs pull`",
+    ),
+];

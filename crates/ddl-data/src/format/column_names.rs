@@ -11,6 +11,8 @@ pub(super) enum Role {
     X,
     Y,
     Scene,
+    /// 1 where the position is not seen.
+    Lost,
     /// From here on columns may be there and not be read.
     Class,
     Left,
@@ -22,7 +24,7 @@ pub(super) enum Role {
 }
 
 /// The roles with their names, in small letters without blanks and signs. Users choose a role by the first one.
-const NAMES: [(Role, &str); 13] = [
+const NAMES: [(Role, &str); 14] = [
     (
         Role::Frame,
         "frame bild frames frameid frameidx frameindex framenumber frameno framenum framenr fr",
@@ -46,8 +48,13 @@ const NAMES: [(Role, &str); 13] = [
         "y posy posey posepositiony poseposepositiony ypos positiony yposition centery ycenter centrey ycentre \
          worldy yworld py yest coordy ycoord locy yloc northing",
     ),
-    (Role::Class, "class classname label type agenttype objecttype category"),
+    (
+        Role::Class,
+        "class classname classid cls label type agenttype actortype objecttype objectclass objtype vehicletype \
+         roadusertype category categoryname",
+    ),
     (Role::Scene, "scene"),
+    (Role::Lost, "lost outside"),
     (Role::Left, "left xmin x1 bbleft bboxleft"),
     (Role::Top, "top ymin y1 bbtop bboxtop"),
     (Role::Right, "right xmax x2 bbright bboxright"),
@@ -147,7 +154,8 @@ pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
         index,
         role,
         time_unit: of_time.filter(|_| role == Role::Time),
-        length: unit_of(&LENGTH_UNITS, last).filter(|_| matches!(role, Role::X | Role::Y)),
+        // `px` alone is a position.
+        length: unit_of(&LENGTH_UNITS, last).filter(|_| matches!(role, Role::X | Role::Y) && words.len() > 1),
     }
 }
 

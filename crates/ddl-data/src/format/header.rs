@@ -7,8 +7,9 @@ use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, is_one_of,
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
 
-/// Names of columns of heights.
-const HEIGHTS: &str = "z zm zcm zmm posz zpos positionz posez";
+/// Names of columns that tell the recordings of one file apart.
+const GROUPS: &str = "recording recordingid video videoid videoname clip clipid sequenceid sequencename session \
+                      sessionid run runid trial trialid case caseid camera cameraid cam camid sceneid scenename floor";
 /// Most faults of columns that say the same in a message.
 const MOST_FAULTS: usize = 5;
 /// Number of unknown columns that a message names.
@@ -43,6 +44,9 @@ pub(super) struct Header {
     /// The column of classes, and the one by which the user keeps rows; `None` in a layout, whose filter knows them.
     pub(super) class: Option<usize>,
     pub(super) keep: Option<usize>,
+    pub(super) lost: Option<usize>,
+    /// Columns whose value must stay the same: others belong to other recordings.
+    pub(super) groups: Vec<usize>,
     /// Names of further columns.
     pub(super) unread: Vec<String>,
     /// What the reader should know of the choice of columns.
@@ -63,7 +67,8 @@ impl Header {
     /// # Errors
     /// The first field that is wrong, and everything that is wrong.
     pub(super) fn of(names: &[&str], choice: &ColumnChoice) -> Result<Self, Fault> {
-        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+        let numbers = names.iter().filter(|name| name.parse::<f64>().is_ok());
+        if 2 * numbers.count() > names.len() {
             let count = names.len();
             let detail = format!("found numbers; put a line with the names of the {count} columns above them");
             let example = if count == 4 { ": frame,pedestrian,x,y" } else { "" };
@@ -124,7 +129,8 @@ impl Roles<'_> {
     }
 
     fn header(&self, choice: &ColumnChoice) -> Result<Header, Fault> {
-        if let Some(detail) = self.wide() {
+        let is_json = self.names[0].starts_with(['{', '[']);
+        if let Some(detail) = self.wide().filter(|_| !is_json) {
             return Err((None, detail));
         }
         let mut faults = self.repeated();
@@ -168,6 +174,11 @@ impl Roles<'_> {
             },
             scene: self.index(Role::Scene),
             class: self.index(Role::Class),
+            lost: self.index(Role::Lost),
+            groups: match self.of(Role::Scene) {
+                Some(_) => Vec::new(),
+                None => unread.iter().copied().filter(|&index| self.is_group(index)).collect(),
+            },
             keep: choice.keep.as_ref().and_then(|(name, _)| self.kept(name)),
             unread: unread.into_iter().map(|index| quoted(self.names[index])).collect(),
         })
@@ -188,7 +199,9 @@ impl Roles<'_> {
                     .to_owned(),
             );
         }
-        let is_height = |name: &&&str| is_one_of(HEIGHTS, &words(name).concat());
+        // A name of x or y, with z instead.
+        let is_x = |name: &str| named(0, name).is_some_and(|named| named.role == Role::X);
+        let is_height = |name: &&&str| !is_x(name) && is_x(&name.to_ascii_lowercase().replace('z', "x"));
         if let Some(z) = self.names.iter().find(is_height).filter(|_| is_point) {
             remarks.push(format!(
                 "{} is taken for the height; if y is, give --columns y={0}",
@@ -204,6 +217,10 @@ impl Roles<'_> {
 
     fn place(&self) -> Option<Place> {
         self.point().or_else(|| self.corner())
+    }
+
+    fn is_group(&self, index: usize) -> bool {
+        is_one_of(GROUPS, &words(self.names[index]).concat())
     }
 
     fn index(&self, role: Role) -> Option<usize> {
@@ -283,9 +300,6 @@ impl Roles<'_> {
             let name = self.names[index];
             let detail = match plain(name).as_str() {
                 "observeduntil" => "this is a table of forecasts; give the tracks that they were made from",
-                "camera" | "cameraid" | "cam" | "camid" | "sceneid" | "scenename" if self.of(Role::Scene).is_none() => {
-                    "for `ddl forecast -` rename it scene, for anything else leave it out"
-                }
                 _ if !has_place && self.names[0].starts_with(['{', '[']) => {
                     "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line"
                 }

@@ -68,6 +68,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
         names: "frame pedestrian x z y v_x v_z v_y",
         place: Place::Point([2, 4]),
         constant: Some(3),
+        note: Some("read as obsmat.txt: frame, pedestrian, x, z, y and velocities"),
         ..PLAIN
     },
     Layout {
@@ -133,7 +134,11 @@ pub(super) static LAYOUTS: [Layout; 11] = [
                 height width length x down y rotation",
         place: Place::Point([13, 15]),
         class: Some((2, "Pedestrian")),
-        note: Some("read as tracking labels of KITTI: pedestrians on the ground, relative to the camera"),
+        rate: Some(10.0),
+        note: Some(
+            "read as tracking labels of KITTI, 10 frames a second: pedestrians on the ground, relative to the camera; \
+             where it moves, forecasts are wrong",
+        ),
         ..PLAIN
     },
     Layout {

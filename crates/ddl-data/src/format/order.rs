@@ -6,6 +6,8 @@ use ddl_core::Position;
 pub(super) const MOST_ROWS: usize = 10_000;
 /// If the steps of one reading are so many times as long as those of the other, it is wrong.
 const LONGER: f64 = 1.5;
+/// ... and this decides alone.
+const MUCH_LONGER: f64 = 5.0;
 /// If the tracks of one reading have so many times as many rows as those of the other, it is right.
 const MORE: f64 = 2.0;
 
@@ -40,6 +42,13 @@ pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
         [Some(first), Some(second)] => (first, second),
     };
     let unlike = |a: f64, b: f64, ratio: f64| a.max(b) > ratio * a.min(b);
+    if unlike(first.step, second.step, MUCH_LONGER) {
+        return if first.step < second.step {
+            Order::FrameFirst
+        } else {
+            Order::PedestrianFirst
+        };
+    }
     let votes = [
         (fractions[0] != fractions[1]).then_some(fractions[0]),
         unlike(first.step, second.step, LONGER).then_some(first.step < second.step),

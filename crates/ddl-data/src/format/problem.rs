@@ -14,7 +14,12 @@ pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String 
 }
 
 pub(super) fn duplicate(pedestrian: impl Display, when: &str, first_line: usize) -> String {
-    format!("pedestrian {pedestrian} is in {when} already (line {first_line}); keep one row")
+    let coarse = if when.starts_with("time") {
+        ", or take frame numbers if the times are too coarse (--columns frame=NAME)"
+    } else {
+        ""
+    };
+    format!("pedestrian {pedestrian} is in {when} already (line {first_line}); keep one row{coarse}")
 }
 
 /// A frame, or a time in microseconds, in words.

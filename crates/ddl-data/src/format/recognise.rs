@@ -38,7 +38,7 @@ impl Format {
                 () => Self::Table,
             });
         };
-        if named("ndjson") || named("jsonl") || first.trim_start().starts_with('{') {
+        if named("ndjson") || named("jsonl") || first.trim_start().starts_with('{') && first.trim() != "{" {
             return Ok(Self::TrajNet);
         }
         if vsp::is_first(first) {
@@ -52,7 +52,8 @@ impl Format {
         let first = fields(separator, first);
         if has_header || lines.has_header_in_comment(first.len(), choice) {
             // A word of text that is no table, such as that of another file, is a row with too few fields.
-            let is_row = separator == Separator::Blanks && first.len() < 3 && !named("csv");
+            let is_json = first.first().is_some_and(|word| word.starts_with(['{', '[']));
+            let is_row = separator == Separator::Blanks && first.len() < 3 && !named("csv") && !is_json;
             return Ok(if is_row { Self::SocialGan } else { Self::Table });
         }
         if let Some(format) = of_columns(&first, separator) {
@@ -89,7 +90,8 @@ fn of_columns(fields: &[String], separator: Separator) -> Option<Format> {
             Some(Format::MotTruth)
         }
         8 if numeric && separator == Separator::Comma && is(0, &|time| time > LEAST_TIME) => Some(Format::Atc),
-        8 if separator == Separator::Blanks => Some(Format::Obsmat),
+        // Nobody moves up or down.
+        8 if separator == Separator::Blanks && is(6, &|v_z| v_z == 0.0) => Some(Format::Obsmat),
         17.. if separator == Separator::Blanks && !is_number(&fields[2]) => Some(Format::Kitti),
         _ => None,
     }

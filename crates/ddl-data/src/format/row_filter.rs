@@ -4,15 +4,15 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::format::choice::ColumnChoice;
-use crate::format::column_names::is_one_of;
+use crate::format::column_names::{is_one_of, words};
 use crate::format::field;
 use crate::format::header::{Header, first_of};
 use crate::format::layouts::Layout;
 
 /// Classes that are not people on foot. A row of one of them is left out.
 const VEHICLES: &str = "car cars veh vehicle truck trucks bus van trailer tram train bicycle bicyclist cyclist biker \
-                        bike motorcycle motorcyclist motorbike scooter skater cart";
-const PEOPLE: &str = "pedestrian pedestrians ped person people";
+                        bike motorcycle motorcyclist motorbike scooter skater cart vehicles wheeler robot ego";
+const PEOPLE: &str = "pedestrian pedestrians ped peds person persons people human";
 /// Reasons to leave rows out that are counted, each for itself.
 const MOST_REASONS: usize = 20;
 /// A position that is to be forecast (TrajNet).
@@ -26,7 +26,7 @@ pub(super) struct RowFilter {
     /// The column that the user names, its name, and its value in rows that count.
     keep: Option<(usize, String, String)>,
     lost: Option<usize>,
-    /// Classes without a known meaning that were read, at most two.
+    /// Classes without a known meaning that were read.
     classes: BTreeSet<String>,
     left_out: BTreeMap<String, usize>,
     /// How many reasons and classes a stream has told.
@@ -41,6 +41,7 @@ impl RowFilter {
         Self {
             class: class.map(|index| (index, None)),
             keep,
+            lost: header.lost,
             ..Self::default()
         }
     }
@@ -86,7 +87,10 @@ impl RowFilter {
     }
 
     fn reason(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Option<String> {
-        if self.lost.is_some_and(|index| fields[index] == "1") {
+        if self
+            .lost
+            .is_some_and(|index| are_alike(&fields[index], "1") || fields[index].eq_ignore_ascii_case("true"))
+        {
             return Some("marked lost".to_owned());
         }
         if let Some((index, name, value)) = &self.keep
@@ -100,11 +104,10 @@ impl RowFilter {
         }
         if let Some((index, kept)) = self.class {
             let class = &*fields[index];
-            let small = class.to_ascii_lowercase();
             if kept.map_or_else(|| is_vehicle(class), |kept| !class.eq_ignore_ascii_case(kept)) {
                 return Some(format!("of class {}", field::quoted(class)));
             }
-            if kept.is_none() && !is_one_of(PEOPLE, &small) && self.classes.len() < 2 {
+            if kept.is_none() && !has_word_of(PEOPLE, class) && self.classes.len() < MOST_REASONS {
                 self.classes.insert(field::quoted(class));
             }
         }
@@ -123,7 +126,7 @@ impl RowFilter {
     pub(super) fn classes_read(&self) -> Option<String> {
         let classes: Vec<String> = self.classes.iter().map(|class| format!("{class:?}")).collect();
         (!classes.is_empty()).then(|| {
-            let classes = classes.join(" and ");
+            let classes = first_of(&classes);
             format!("rows of class {classes} are read as pedestrians; --keep class=... chooses")
         })
     }
@@ -141,9 +144,13 @@ impl RowFilter {
     }
 }
 
-/// Whether a class names something else than people on foot, as `car` does.
+/// Whether a class names something else than people on foot, as `car` and `vehicle.bicycle` do.
 pub fn is_vehicle(class: &str) -> bool {
-    is_one_of(VEHICLES, &class.to_ascii_lowercase())
+    has_word_of(VEHICLES, class)
+}
+
+fn has_word_of(names: &str, class: &str) -> bool {
+    words(class).iter().any(|word| is_one_of(names, word))
 }
 
 /// Whether two values are the same word or the same number.

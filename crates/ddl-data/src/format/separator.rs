@@ -18,7 +18,13 @@ pub(super) enum Separator {
 impl Separator {
     pub(super) fn of(line: &str) -> Self {
         let count = |separator: char| line.matches(separator).count();
-        let (commas, semicolons) = (count(','), count(';'));
+        let is_digit = |at: usize| line.as_bytes().get(at).is_some_and(u8::is_ascii_digit);
+        let mut commas = line.match_indices(',');
+        let are_decimal = commas.all(|(at, _)| at > 0 && is_digit(at - 1) && is_digit(at + 1));
+        let (mut commas, semicolons) = (count(','), count(';'));
+        if are_decimal && line.split_ascii_whitespace().count() >= 4 {
+            commas = 0;
+        }
         // No decimal mark is a semicolon.
         if semicolons > 0 && semicolons >= commas {
             Self::Semicolon

@@ -38,8 +38,8 @@ pub(super) struct TrackColumns {
     header: Header,
     is_mapped: bool,
     filter: RowFilter,
-    /// A column whose value stays the same, and its value.
-    constant: Option<(usize, Option<f64>)>,
+    /// Columns whose value stays the same, and their values.
+    constants: Vec<(usize, Option<String>)>,
     /// Further columns that must hold numbers.
     numbers: Vec<usize>,
     /// Why the first column is read in its unit, if its name does not say so.
@@ -100,6 +100,7 @@ impl TrackColumns {
 
     fn named(header: Header, names: Vec<String>, separator: Separator, choice: &ColumnChoice) -> Self {
         let filter = RowFilter::of_header(&header, choice, &names);
+        let constants = header.groups.iter().map(|&index| (index, None)).collect();
         let unnamed = names.iter().rev().take_while(|name| name.is_empty()).count();
         Self {
             format: Format::Table,
@@ -109,7 +110,7 @@ impl TrackColumns {
             header,
             is_mapped: choice.is_mapped,
             filter,
-            constant: None,
+            constants,
             numbers: Vec::new(),
             assumed_unit: None,
             note: None,
@@ -157,13 +158,14 @@ impl TrackColumns {
             scene: None,
             class: None,
             keep: None,
+            lost: None,
+            groups: layout.constant.into_iter().collect(),
             unread: Vec::new(),
             remarks,
         };
         Ok(Self {
             format: layout.format,
             filter: RowFilter::of_layout(layout, choice)?,
-            constant: layout.constant.map(|index| (index, None)),
             numbers: numbers.collect(),
             note: layout.note.filter(|_| is_as_usual),
             ..Self::named(header, names, separator, choice)
@@ -209,11 +211,11 @@ impl TrackColumns {
             });
             self.look_at(time.map(Cow::into_owned).as_deref());
         }
-        let before = (self.filter.clone(), self.constant);
+        let before = (self.filter.clone(), self.constants.clone());
         if let Some(read) = self.rows_in_known_unit(rows.clone(), most)? {
             return Ok(read);
         }
-        (self.filter, self.constant) = before;
+        (self.filter, self.constants) = before;
         Ok(self.rows_in_known_unit(rows, most)?.unwrap_or_default())
     }
 
@@ -351,7 +353,8 @@ impl TrackColumns {
             field::pedestrian(name, "pedestrian")
         };
         let pedestrian = place(self.header.pedestrian).read(pedestrian)?;
-        if matches!(self.format, Format::Mot | Format::MotTruth) && pedestrian == PedestrianField::Number(-1, None) {
+        let is_of_tracker = matches!(self.format, Format::Mot | Format::MotTruth | Format::Kitti);
+        if is_of_tracker && pedestrian == PedestrianField::Number(-1, None) {
             let problem = "the pedestrian is -1: these are detections without tracks; give the output of a tracker";
             return Err(place(self.header.pedestrian).wrong(problem));
         }
@@ -360,7 +363,8 @@ impl TrackColumns {
         for &index in &self.numbers {
             place(index).read(field::number(&fields[index], &self.names[index]))?;
         }
-        self.check_constant(fields, line)?;
+        self.check_constants(fields, line)?;
+        self.check_sizes(fields, line)?;
         let scene = self.header.scene.map(|index| {
             let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
             place(index).read(scene)
@@ -399,24 +403,42 @@ impl TrackColumns {
         }
     }
 
-    #[expect(clippy::float_cmp, reason = "a constant is written with the same digits")]
-    fn check_constant(&mut self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
-        let Some((index, first)) = &mut self.constant else {
-            return Ok(());
-        };
-        let Ok(number) = fields[*index].parse::<f64>() else {
-            return Ok(());
-        };
-        let known = *first.get_or_insert(number);
-        if known == number {
+    /// Fields of a constant are written alike.
+    fn check_constants(&mut self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
+        for (index, first) in &mut self.constants {
+            let found = &*fields[*index];
+            let known = &*first.get_or_insert_with(|| found.to_owned());
+            if known == found {
+                continue;
+            }
+            let [known, found, name] = [known, found, &self.names[*index]].map(field::quoted);
+            let problem = if self.format == Format::Obsmat {
+                format!(
+                    "eight columns are read as those of obsmat.txt ({}), but the fourth, the height, changes from \
+                     {known} to {found}; if they are others, write their names above the rows: frame, pedestrian, x, \
+                     y, and any others",
+                    self.names.join(", ")
+                )
+            } else {
+                format!(
+                    "{name} changes from {known} to {found}: a file holds one recording; --keep {name}={known} reads \
+                     one of them; for `ddl forecast -` rename the column scene"
+                )
+            };
+            return Err(FilePlace::field(line, *index + 1).wrong(problem));
+        }
+        Ok(())
+    }
+
+    /// Boxes of KITTI have the size of people where there is a position on the ground.
+    fn check_sizes(&self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
+        let is_size = |field: &Cow<'_, str>| field.parse().is_ok_and(|size: f64| size > 0.0 && size < 3.0);
+        if self.format != Format::Kitti || fields[10..13].iter().all(is_size) {
             return Ok(());
         }
-        let problem = format!(
-            "eight columns are read as those of obsmat.txt ({}), but the fourth, the height, changes from {known} to \
-             {number}; if they are others, write their names above the rows: frame, pedestrian, x, y, and any others",
-            self.names.join(", ")
-        );
-        Err(FilePlace::field(line, *index + 1).wrong(problem))
+        let problem = "the height, width and length (columns 11 to 13) are not those of a person: are these tracks in \
+                       the picture alone, or positions before sizes? Write the names of the columns above the rows";
+        Err(FilePlace::field(line, 11).wrong(problem))
     }
 
     fn wrong_count(&self, found: usize) -> String {
@@ -427,6 +449,7 @@ impl TrackColumns {
             Separator::Blanks if self.format == Format::SocialGan && found == 3 => OF_ONE,
             _ if found == 1 => "; the fields are not separated like those of the first line",
             _ if found == expected + 1 => "; does each row begin with a name that the header lacks?",
+            Separator::Blanks if found > expected => "; write the names of the columns above the rows",
             Separator::Comma if found > expected => "; a comma stands between two fields and is not a decimal point",
             _ => "",
         };

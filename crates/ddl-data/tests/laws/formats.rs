@@ -303,7 +303,7 @@ fn lines_with_a_sign_are_rows_or_comments() {
     let classes = "frame,id,class,x,y\n0,1,0,0,0\n0,2,2,5,5\n";
     let notes = read("coco.csv", classes).unwrap().notes().join("; ");
     assert!(
-        notes.contains("rows of class \"0\" and \"2\" are read as pedestrians"),
+        notes.contains("rows of class \"0\", \"2\" are read as pedestrians"),
         "{notes}"
     );
 }
