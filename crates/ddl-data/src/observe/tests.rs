@@ -147,3 +147,36 @@ fn the_rows_that_are_kept_are_bounded() {
     let found = track.observed(last, 0.4, 1.0, &noise).unwrap().positions;
     assert!(farthest(&found, &expected) < 0.01, "{found:?}");
 }
+
+/// Another pedestrian under the same id, after some time without rows: the track begins anew there, and nobody runs.
+#[test]
+fn rows_that_go_on_from_a_jump_are_another_track() {
+    for (interval, gap, jump) in [
+        (0.4, 0.4, [0.0, 1.6]),
+        (0.4, 0.4, [1.2, 0.0]),
+        (0.2, 0.2, [1.0, 0.0]),
+        (0.1, 0.1, [0.0, 0.8]),
+        (0.1, 0.8, [2.0, 0.0]),
+        (0.1, 1.2, [3.0, 0.0]),
+        (0.1, 1.5, [3.0, 0.0]),
+        (0.1, 1.8, [0.0, 5.0]),
+        (0.1, 1.8, [0.0, 0.0]),
+    ] {
+        let first = walk((0..20).map(|k| interval * f64::from(k)));
+        let again = first[19].0 + gap;
+        let second = walk((0..10).map(|k| again + interval * f64::from(k)));
+        let moved = second
+            .into_iter()
+            .map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]]));
+        let moved: Vec<_> = moved.collect();
+        let seen = observed(&[first, moved].concat(), again + 9.0 * interval);
+        let [.., before, last] = seen.positions;
+        let speed = distance(before, last) / 0.4;
+        assert!((1.3..1.45).contains(&speed), "{interval} {gap} {jump:?}: {speed} m/s");
+        let earliest = distance(seen.positions[0], last) / 2.8;
+        assert!(
+            (1.3..1.45).contains(&earliest),
+            "{interval} {gap} {jump:?}: {earliest} m/s"
+        );
+    }
+}

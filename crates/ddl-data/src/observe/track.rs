@@ -22,6 +22,9 @@ const SHOW_SPEED: usize = 3;
 /// Faster than this (m/s) a pedestrian is only believed after this time (s).
 const BRISK: f64 = 3.5;
 const SHORT: f64 = 0.35;
+/// Speed (m/s) that any pedestrian reaches, and what is added to 1.3 times its own: the top speed of forecasts.
+const WALKING: f64 = 2.15;
+const FASTER: [f64; 2] = [1.3, 0.45];
 /// Time (s) for which the fastest speed counts.
 const RECENT: f64 = 1.2;
 /// Fastest pedestrian that is taken up again after a jump (m/s).
@@ -134,7 +137,7 @@ impl ObservedTrack {
             return None;
         }
         let fit = self.fit(row, tick_time, known);
-        if fit.is_expected || fit.is_turn {
+        if (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time, known) {
             self.suspects.clear();
             let turn = || Turn {
                 before: self.noise.clone(),
@@ -185,21 +188,38 @@ impl ObservedTrack {
         let seconds = (row.time - self.last_time()) * tick_time;
         let (expected, margin) = self.expected_after(seconds, known);
         let distance = expected.distance(row.position);
+        let own = self.pace.speed.max(expected.speed());
         // A speed not yet seen may be that of a runner.
-        let speed = if self.rows.len() < SHOW_SPEED {
-            RUNNING
+        let [turning, fastest] = if self.rows.len() < SHOW_SPEED {
+            [RUNNING; 2]
         } else {
-            (TURNING * self.pace.speed.max(expected.speed())).min(RUNNING)
+            [(TURNING * own).min(RUNNING), WALKING.max(FASTER[0] * own + FASTER[1])]
         };
         let last = self.rows.back().map_or(row.position, |last| last.position);
         // The estimate lags behind a runner who starts.
         let ahead = self.ahead(row.time).filter(|_| self.rows.len() >= SHOW_SPEED);
         let off = ahead.map_or(distance, |ahead| distance.min(distance_between(ahead, row.position)));
+        let way = distance_between(last, row.position);
+        let near = off <= SURPRISE + ACCELERATION * seconds * seconds + margin;
         Fit {
             distance,
-            is_expected: off <= SURPRISE + ACCELERATION * seconds * seconds + margin,
-            is_turn: distance_between(last, row.position) <= speed * seconds + margin,
+            is_expected: near && way <= SURPRISE + fastest * seconds + margin,
+            is_turn: way <= turning * seconds + margin,
         }
+    }
+
+    /// Whether a row goes on from the last row in doubt rather than from the track, from which it has this distance (m).
+    fn goes_on(&self, row: Row, distance: f64, tick_time: f64, known: &RecordingNoise) -> bool {
+        let expected = |time: f64| {
+            self.expected_after((time - self.last_time()) * tick_time, known)
+                .0
+                .position
+        };
+        self.suspects.last().is_some_and(|suspect| {
+            let [from, to] = [suspect.row.time, row.time].map(expected);
+            let place = [0, 1].map(|axis| suspect.row.position[axis] + to[axis] - from[axis]);
+            distance_between(place, row.position) < distance
+        })
     }
 
     /// The last two rows, extrapolated to a time.
