@@ -29,6 +29,11 @@ const MANY_STEPS: usize = 20;
 const NARROW: f64 = 1.5;
 const CROSSED: f64 = 0.2;
 const A_CROWD: usize = 3;
+/// Time (s) at one place and distance (m) to the next of who is seen more seldom than its rows say, and share of rows
+/// that repeat a position.
+const STAY: std::ops::RangeInclusive<f64> = 0.19..=1.25;
+const MOVED: f64 = 0.2;
+const OFTEN_REPEATED: f64 = 0.2;
 /// Share of rows at the origin that people who cross it do not have.
 const PLACEHOLDERS: f64 = 0.05;
 /// Time without any motion (s) that people do not reach, even standing, and speed before it (m/s), of a frozen track.
@@ -77,6 +82,12 @@ pub enum PlausibilityWarning {
     )]
     Unseen { share: f64 },
     #[error(
+        "{:.0} % of the rows of walking pedestrians repeat the position before, and then they move on; does the \
+         tracker write its last detection again? Leave such rows out",
+        100.0 * .share
+    )]
+    Repeated { share: f64 },
+    #[error(
         "pedestrian {} jumps in the step that ends at {when}, {:.1} m/s; is one of its two positions wrong, or does \
          the track continue with another pedestrian?",
         .fastest.pedestrian,
@@ -120,6 +131,8 @@ pub(crate) struct Speeds {
     pub(crate) pedestrians: usize,
     /// The longer side of the area of all positions, m.
     pub(crate) side: f64,
+    /// Share of the rows of who walks that repeat the position before.
+    repeated: f64,
     /// Rows at the origin, and pedestrians with such rows.
     at_zero: [usize; 2],
 }
@@ -145,6 +158,9 @@ impl Speeds {
             })
         } else if median > IMPLAUSIBLE {
             Some(PlausibilityWarning::Fast { median })
+        } else if self.repeated > OFTEN_REPEATED {
+            let share = self.repeated;
+            Some(PlausibilityWarning::Repeated { share })
         } else if fastest.speed > JUMP {
             let (fastest, when) = (fastest.clone(), format!("frame {}", fastest.frame));
             Some(PlausibilityWarning::Jump { fastest, when })
@@ -168,7 +184,7 @@ impl Recording {
         let (low, high) = self.corners();
         let mut speeds: Vec<(f64, &Observation)> = Vec::new();
         let mut walking: Vec<f64> = Vec::new();
-        let mut at_zero = [0; 2];
+        let (mut at_zero, mut repeated, mut walked) = ([0; 2], 0, 0);
         for track in tracks.values() {
             let zeros = track
                 .iter()
@@ -181,6 +197,7 @@ impl Recording {
                 Some((speed(before, seen.position), *seen))
             }));
             if way(track) > FAR {
+                (repeated, walked) = (repeated + repeats(track, step), walked + track.len());
                 walking.extend(speeds[first..].iter().map(|(speed, _)| *speed));
             }
         }
@@ -199,6 +216,7 @@ impl Recording {
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
             pedestrians: tracks.len(),
             side: (high[0] - low[0]).max(high[1] - low[1]),
+            repeated: repeated as f64 / f64::max(1.0, walked as f64),
             at_zero,
         }
     }
@@ -206,6 +224,17 @@ impl Recording {
 
 pub(crate) fn restarted(count: usize) -> Option<PlausibilityWarning> {
     (count > 0).then_some(PlausibilityWarning::Restarted { count })
+}
+
+/// Rows that repeat the position before, of stays after which the pedestrian moves on by a step.
+fn repeats(track: &[&Observation], step: i64) -> usize {
+    let same = |a: &&Observation, b: &&Observation| a.position.map(f64::to_bits) == b.position.map(f64::to_bits);
+    let stays: Vec<&[&Observation]> = track.chunk_by(same).collect();
+    let brief = stays.array_windows().filter(|[stay, next]| {
+        let seconds = (next[0].frame - stay[0].frame) as f64 * TIME_STEP / step as f64;
+        STAY.contains(&seconds) && distance(stay[0].position, next[0].position) > MOVED
+    });
+    brief.map(|[stay, _]| stay.len() - 1).sum()
 }
 
 /// Whether a track walks, and then repeats one position to its end.

@@ -36,7 +36,7 @@ where
     Ok(positions)
 }
 
-/// [`rollout`] into a slice: `positions[0]` becomes `start`, and each further element is one step. Allocates nothing;
+/// [`rollout`] into a slice: `positions[0]` becomes `start`, and each further element is one step;
 /// an empty slice stays unchanged.
 ///
 /// # Errors

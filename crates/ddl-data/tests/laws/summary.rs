@@ -22,6 +22,10 @@ fn implausible_speeds_give_warnings() {
     assert!(matches!(warnings(walk(30.0))[..], [PlausibilityWarning::Fast { median }, ..] if median > 70.0));
     // A standing pedestrian causes no warning, even with the noise of a tracker.
     assert_eq!(warnings(walk(0.001)), []);
+    // Detections once a second, each written ten times.
+    let held = |t: i64| Observation::new(t, PedestrianId(1), [1.3 * (t / 10) as f64, 0.0]);
+    let held = Recording::new("yard", 4, (0..200).map(held).collect()).unwrap();
+    assert!(matches!(held.speed_warning(), Some(PlausibilityWarning::Repeated { share }) if share > 0.8));
     // Two who are not seen for some steps.
     let absent = |id, t| Observation::new(t, PedestrianId(id), [0.0; 2]);
     let seen = [
