@@ -3,8 +3,7 @@
 use crate::arrays::{array, flat, points};
 use crate::errors::of_any;
 use ddl::dynamics::{
-    Attractor, CholeskyMetric, Flow as _, LyapunovCertificate, MetricSchedule, NaturalGradientFlow, StableEuler, State,
-    rollout,
+    Attractor, CholeskyMetric, LyapunovCertificate, MetricSchedule, NaturalGradientFlow, StableEuler, State, rollout,
 };
 use nalgebra::{Matrix2, Vector2};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
