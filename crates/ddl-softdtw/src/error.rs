@@ -1,28 +1,9 @@
 //! Errors of soft-DTW values, gradients and searches.
 
-use std::fmt;
-
 use thiserror::Error;
 
-/// The sequence of a comparison that an error refers to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SequenceRole {
-    /// The first argument, `x` (the query of a search).
-    X,
-    /// The second argument, `y` (the candidate of a search).
-    Y,
-}
-
-impl fmt::Display for SequenceRole {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::X => "x",
-            Self::Y => "y",
-        })
-    }
-}
-
-/// A soft-DTW value or gradient cannot be computed.
+/// A soft-DTW value or gradient cannot be computed. A sequence is `'x'`, the first one (the query of a search), or
+/// `'y'`.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -30,10 +11,10 @@ pub enum SoftDtwError {
     #[error("gamma is {gamma}: it must be finite and not negative (0 is hard DTW)")]
     InvalidGamma { gamma: f64 },
     #[error("sequence {sequence} is empty: soft-DTW needs at least one step")]
-    EmptySequence { sequence: SequenceRole },
+    EmptySequence { sequence: char },
     #[error("sequence {sequence}, step {step}, component {component} is {value}: must be finite")]
     NonFinite {
-        sequence: SequenceRole,
+        sequence: char,
         step: usize,
         component: usize,
         value: f64,

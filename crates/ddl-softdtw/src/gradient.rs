@@ -1,6 +1,6 @@
 //! The gradient of soft-DTW: the expected alignment of each cell times the derivative of its cost.
 
-use crate::error::{SequenceRole, SoftDtwError};
+use crate::error::SoftDtwError;
 use crate::value::{SoftDtw, check, finite, normalise};
 
 impl SoftDtw {
@@ -28,8 +28,8 @@ impl SoftDtw {
         x: &[[f64; D]],
         y: &[[f64; D]],
     ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
-        check(x, SequenceRole::X)?;
-        check(y, SequenceRole::Y)?;
+        check(x, 'x')?;
+        check(y, 'y')?;
         finite_gradient(self.grid(x, y).value_and_gradient())
     }
 

@@ -54,6 +54,6 @@ mod softmin;
 mod value;
 mod weight;
 
-pub use error::{SearchError, SequenceRole, SoftDtwError};
+pub use error::{SearchError, SoftDtwError};
 pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;

@@ -3,7 +3,7 @@
 use ddl_simd::Dispatch;
 use rayon::prelude::*;
 
-use crate::error::{SearchError, SequenceRole, SoftDtwError};
+use crate::error::{SearchError, SoftDtwError};
 use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite, normalise};
 
@@ -50,7 +50,7 @@ impl<const D: usize> SearchIndex<D> {
         }
         let checked: Vec<_> = candidates
             .iter()
-            .map(|candidate| check(candidate.as_ref(), SequenceRole::Y))
+            .map(|candidate| check(candidate.as_ref(), 'y'))
             .collect();
         for (index, checked) in checked.into_iter().enumerate() {
             checked.map_err(|source| SearchError::Candidate { index, source })?;
@@ -122,7 +122,7 @@ impl<const D: usize> SearchIndex<D> {
 
     fn search(&self, queries: &[&[[f64; D]]], n: usize) -> Vec<Result<Vec<Neighbour>, SoftDtwError>> {
         let wanted = n.min(self.len());
-        let checked = queries.iter().map(|query| check(query, SequenceRole::X));
+        let checked = queries.iter().map(|query| check(query, 'x'));
         let checked: Vec<Result<(), SoftDtwError>> = checked.collect();
         let sieve = self.sieve.as_ref().filter(|_| wanted > 0 && wanted < self.len());
         let valid = queries.iter().zip(&checked);

@@ -1,6 +1,6 @@
 //! The soft-DTW value of two sequences.
 
-use crate::error::{SequenceRole, SoftDtwError};
+use crate::error::SoftDtwError;
 use crate::grid::Grid;
 
 /// Soft-DTW with a fixed smoothing γ, over all warping paths. The cost δ of two steps is their squared distance: m² for
@@ -63,8 +63,8 @@ impl SoftDtw {
     /// # Errors
     /// An empty sequence, a component that is not finite, or a value beyond the range of `f64`.
     pub fn value<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> Result<f64, SoftDtwError> {
-        check(x, SequenceRole::X)?;
-        check(y, SequenceRole::Y)?;
+        check(x, 'x')?;
+        check(y, 'y')?;
         finite(self.value_unchecked(x, y))
     }
 
@@ -73,8 +73,8 @@ impl SoftDtw {
     /// # Errors
     /// As [`SoftDtw::value`].
     pub fn normalised<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> Result<f64, SoftDtwError> {
-        check(x, SequenceRole::X)?;
-        check(y, SequenceRole::Y)?;
+        check(x, 'x')?;
+        check(y, 'y')?;
         let value = finite(self.value_unchecked(x, y))?;
         finite(normalise(value, self.self_value(x), self.self_value(y)))
     }
@@ -118,7 +118,7 @@ pub(crate) fn finite(value: f64) -> Result<f64, SoftDtwError> {
 }
 
 /// Checks that the sequence has at least one step and only finite components.
-pub(crate) fn check<const D: usize>(steps: &[[f64; D]], sequence: SequenceRole) -> Result<(), SoftDtwError> {
+pub(crate) fn check<const D: usize>(steps: &[[f64; D]], sequence: char) -> Result<(), SoftDtwError> {
     if steps.is_empty() {
         return Err(SoftDtwError::EmptySequence { sequence });
     }
