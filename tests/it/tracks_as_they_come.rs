@@ -291,7 +291,7 @@ fn a_stream_takes_the_rate_of_a_comment() {
     ] {
         let of_option = place.run_on(&stated, &format!("{line} {option}"));
         assert_eq!(of_comment.stdout != of_option.stdout, is_other, "{option}");
-        let told = of_option.stderr.contains("although a comment says 10 frames a second");
+        let told = of_option.stderr.contains("although the input says 10 frames a second");
         assert_eq!(told, is_other, "{}", of_option.stderr);
     }
     assert!(

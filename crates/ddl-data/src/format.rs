@@ -155,14 +155,15 @@ const OTHERS: [(&[&[u8]], &str); 5] = [
             b"\x89HDF",
             b"\x93NUMPY",
             b"MATLAB 5.0",
-            b"\x80\x04\x95",
+            b"\x80\x04",
+            b"\x80\x05",
             b"#ROSBAG",
             b"\xd0\xcf\x11\xe0",
         ],
         "the file is binary (SQLite, HDF5, numpy, MATLAB, pickle, bag or old Excel); write its tracks as csv first",
     ),
     (
-        &[b"<", b"\xef\xbb\xbf<"],
+        &[b"<?xml", b"<!", b"<html", b"<gpx", b"\xef\xbb\xbf<"],
         "the file is XML or HTML; write its tracks as csv first",
     ),
     (

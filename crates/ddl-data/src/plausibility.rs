@@ -83,7 +83,7 @@ pub enum PlausibilityWarning {
     Unseen { share: f64 },
     #[error(
         "{:.0} % of the rows of walking pedestrians repeat the position before, and then they move on; does the \
-         tracker write its last detection again? Leave such rows out",
+         tracker write its last detection again (leave such rows out), or are positions rounded?",
         100.0 * .share
     )]
     Repeated { share: f64 },
@@ -190,7 +190,9 @@ impl Recording {
                 .iter()
                 .filter(|seen| seen.position.iter().all(|x| *x == 0.0))
                 .count();
-            at_zero = [at_zero[0] + zeros, at_zero[1] + usize::from(zeros > 0)];
+            if zeros > 1 {
+                at_zero = [at_zero[0] + zeros, at_zero[1] + 1];
+            }
             let first = speeds.len();
             speeds.extend(track.iter().filter_map(|seen| {
                 let before = position_at(track, seen.frame - step, step)?;

@@ -143,7 +143,8 @@ impl Recording {
     /// The recording in ticks of a clock, of which [`frame_step`](Self::frame_step) make 0.4 s.
     ///
     /// # Errors
-    /// [`ClockError`] where frame numbers are too large, or the rows of a pedestrian are more than 1.2 s apart.
+    /// [`ClockError`] where frame numbers are too large, or the rows of a pedestrian are more than 1.2 s or less than
+    /// 1 ms apart.
     pub fn on_clock(&self, clock: Clock) -> Result<Self, ClockError> {
         let apart = self.usual_spacing().unwrap_or(0) as f64 / clock.frames_a_second();
         if apart > SLOWEST {

@@ -54,7 +54,7 @@ const NAMES: [(Role, &str); 14] = [
          roadusertype category categoryname",
     ),
     (Role::Scene, "scene"),
-    (Role::Lost, "lost outside"),
+    (Role::Lost, "lost"),
     (Role::Left, "left xmin x1 bbleft bboxleft"),
     (Role::Top, "top ymin y1 bbtop bboxtop"),
     (Role::Right, "right xmax x2 bbright bboxright"),

@@ -3,13 +3,17 @@
 use crate::clock::TimeUnit;
 
 use crate::format::choice::ColumnChoice;
-use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, is_one_of, named, nanoseconds_beside, words};
+use crate::format::column_names::{
+    LengthUnit, Named, Role, chosen_as, is_known, is_one_of, named, nanoseconds_beside, words,
+};
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
 
 /// Names of columns that tell the recordings of one file apart.
-const GROUPS: &str = "recording recordingid video videoid videoname clip clipid sequenceid sequencename session \
-                      sessionid run runid trial trialid case caseid camera cameraid cam camid sceneid scenename floor";
+const GROUPS: &str = "recording recordingid video videoid videoname clipid sequenceid sequencename session sessionid \
+                      runid trialid caseid camera cameraid cam camid sceneid scenename";
+/// Of these, those that a stream may call `scene`.
+const CAMERAS: &str = "camera cameraid cam camid sceneid scenename";
 /// Most faults of columns that say the same in a message.
 const MOST_FAULTS: usize = 5;
 /// Number of unknown columns that a message names.
@@ -68,7 +72,7 @@ impl Header {
     /// The first field that is wrong, and everything that is wrong.
     pub(super) fn of(names: &[&str], choice: &ColumnChoice) -> Result<Self, Fault> {
         let numbers = names.iter().filter(|name| name.parse::<f64>().is_ok());
-        if 2 * numbers.count() > names.len() {
+        if 2 * numbers.count() > names.len() && !names.iter().any(|name| is_known(name)) {
             let count = names.len();
             let detail = format!("found numbers; put a line with the names of the {count} columns above them");
             let example = if count == 4 { ": frame,pedestrian,x,y" } else { "" };
@@ -124,8 +128,12 @@ impl Header {
 }
 
 impl Roles<'_> {
+    /// The column of that role; of several classes the first that is no number of a class.
     fn of(&self, role: Role) -> Option<&Named> {
-        self.found.iter().find(|named| named.role == role)
+        let mut found = self.found.iter().filter(|named| named.role == role);
+        let is_id =
+            |named: &&Named| role == Role::Class && self.names[named.index].to_ascii_lowercase().ends_with("id");
+        found.clone().find(|named| !is_id(named)).or(found.next())
     }
 
     fn header(&self, choice: &ColumnChoice) -> Result<Header, Fault> {
@@ -149,7 +157,10 @@ impl Roles<'_> {
         let of_length = self.of(Role::X).and_then(|named| named.length);
         let of_length = of_length.or(self.of(Role::Y).and_then(|named| named.length));
         // The columns of a box are not read beside x and y.
-        let beside = self.found.iter().filter(|named| is_point && named.role > Role::Class);
+        let class = self.index(Role::Class);
+        let beside = self.found.iter().filter(|named| {
+            is_point && named.role > Role::Class || named.role == Role::Class && Some(named.index) != class
+        });
         let mut unread: Vec<usize> = beside
             .map(|named| named.index)
             .chain(self.unknown.iter().copied())
@@ -173,7 +184,7 @@ impl Roles<'_> {
                 Some(unit) => unit.per_metre(),
             },
             scene: self.index(Role::Scene),
-            class: self.index(Role::Class),
+            class,
             lost: self.index(Role::Lost),
             groups: match self.of(Role::Scene) {
                 Some(_) => Vec::new(),
@@ -270,7 +281,8 @@ impl Roles<'_> {
     fn repeated(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         for named in &self.found {
-            if let Some(first) = self.of(named.role).filter(|first| first.index != named.index) {
+            let first = self.of(named.role).filter(|_| named.role != Role::Class);
+            if let Some(first) = first.filter(|first| first.index != named.index) {
                 let [first, again] = [first, named].map(|named| quoted(self.names[named.index]));
                 let fault = format!("the columns {first:?} and {again:?} both say the same");
                 faults.push((Some(named.index), fault));
@@ -364,6 +376,11 @@ impl Roles<'_> {
             format!("still missing: {}{rename}", missing.join(", ")),
         ))
     }
+}
+
+/// Whether a column tells cameras apart, which a stream does by scenes.
+pub(super) fn is_camera(name: &str) -> bool {
+    is_one_of(CAMERAS, &words(name).concat())
 }
 
 /// The names, at most five of them.

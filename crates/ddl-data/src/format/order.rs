@@ -29,7 +29,8 @@ struct Tracks {
     unit: u64,
 }
 
-/// Finds the order from rows of the first two columns with a position. It is clear if nothing speaks against it.
+/// Finds the order from rows of the first two columns with a position. It is clear if nothing speaks against it, or if
+/// the steps of one reading are five times as long.
 pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
     let rows = &rows[..rows.len().min(MOST_ROWS)];
     // Only times have fractions.

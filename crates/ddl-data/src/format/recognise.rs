@@ -91,7 +91,7 @@ fn of_columns(fields: &[String], separator: Separator) -> Option<Format> {
         }
         8 if numeric && separator == Separator::Comma && is(0, &|time| time > LEAST_TIME) => Some(Format::Atc),
         // Nobody moves up or down.
-        8 if separator == Separator::Blanks && is(6, &|v_z| v_z == 0.0) => Some(Format::Obsmat),
+        8 if separator == Separator::Blanks && is(6, &|v_z| v_z.is_nan() || v_z.abs() < 1e-6) => Some(Format::Obsmat),
         17.. if separator == Separator::Blanks && !is_number(&fields[2]) => Some(Format::Kitti),
         _ => None,
     }

@@ -15,6 +15,8 @@ const VEHICLES: &str = "car cars veh vehicle truck trucks bus van trailer tram t
 const PEOPLE: &str = "pedestrian pedestrians ped peds person persons people human";
 /// Reasons to leave rows out that are counted, each for itself.
 const MOST_REASONS: usize = 20;
+/// Classes after which a stream tells no more of them.
+const MOST_TOLD: usize = 2;
 /// A position that is to be forecast (TrajNet).
 const UNKNOWN: &str = "?";
 
@@ -87,10 +89,7 @@ impl RowFilter {
     }
 
     fn reason(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Option<String> {
-        if self
-            .lost
-            .is_some_and(|index| are_alike(&fields[index], "1") || fields[index].eq_ignore_ascii_case("true"))
-        {
+        if self.lost.is_some_and(|index| is_lost(&fields[index])) {
             return Some("marked lost".to_owned());
         }
         if let Some((index, name, value)) = &self.keep
@@ -107,12 +106,18 @@ impl RowFilter {
             if kept.map_or_else(|| is_vehicle(class), |kept| !class.eq_ignore_ascii_case(kept)) {
                 return Some(format!("of class {}", field::quoted(class)));
             }
-            if kept.is_none() && !has_word_of(PEOPLE, class) && self.classes.len() < MOST_REASONS {
+            let is_known = has_word_of(PEOPLE, class) && !has_word_of(VEHICLES, class);
+            if kept.is_none() && !is_known && self.classes.len() < MOST_REASONS {
                 self.classes.insert(field::quoted(class));
             }
         }
         let is_unknown = place.iter().all(|&index| fields[index] == UNKNOWN);
         is_unknown.then(|| "with ? for a position to forecast".to_owned())
+    }
+
+    /// Whether people are read, and not another class that the user names.
+    pub(super) fn is_of_people(&self) -> bool {
+        self.class.is_some()
     }
 
     /// The rows that were left out, counted by reason.
@@ -139,23 +144,29 @@ impl RowFilter {
             let reasons: Vec<String> = self.left_out.keys().cloned().collect();
             format!("rows are left out: {}", first_of(&reasons))
         });
-        let classes = (before[1] < classes).then(|| self.classes_read()).flatten();
+        let classes = (before[1] < classes && before[1] < MOST_TOLD)
+            .then(|| self.classes_read())
+            .flatten();
         rows.into_iter().chain(classes).collect()
     }
 }
 
 /// Whether a class names something else than people on foot, as `car` and `vehicle.bicycle` do.
 pub fn is_vehicle(class: &str) -> bool {
-    has_word_of(VEHICLES, class)
+    is_one_of(VEHICLES, &class.to_ascii_lowercase()) || has_word_of(VEHICLES, class) && !has_word_of(PEOPLE, class)
 }
 
 fn has_word_of(names: &str, class: &str) -> bool {
     words(class).iter().any(|word| is_one_of(names, word))
 }
 
+fn is_lost(mark: &str) -> bool {
+    mark.eq_ignore_ascii_case("true") || mark.parse().is_ok_and(|mark: f64| mark != 0.0)
+}
+
 /// Whether two values are the same word or the same number.
 #[expect(clippy::float_cmp, reason = "1 and 1.0 are the same number")]
-fn are_alike(found: &str, asked: &str) -> bool {
+pub(super) fn are_alike(found: &str, asked: &str) -> bool {
     let numbers = found.parse::<f64>().ok().zip(asked.parse::<f64>().ok());
     found.eq_ignore_ascii_case(asked) || numbers.is_some_and(|(found, asked)| found == asked)
 }

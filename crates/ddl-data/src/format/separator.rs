@@ -22,7 +22,8 @@ impl Separator {
         let mut commas = line.match_indices(',');
         let are_decimal = commas.all(|(at, _)| at > 0 && is_digit(at - 1) && is_digit(at + 1));
         let (mut commas, semicolons) = (count(','), count(';'));
-        if are_decimal && line.split_ascii_whitespace().count() >= 4 {
+        let words = || line.split_ascii_whitespace();
+        if are_decimal && words().count() >= 4 && words().all(|word| word.matches(',').count() < 2) {
             commas = 0;
         }
         // No decimal mark is a semicolon.

@@ -311,7 +311,7 @@ impl<R: BufRead> FrameReader<R> {
                 let comments: Vec<&str> = comments.lines().collect();
                 let columns = TrackColumns::of((format, &self.choice), &comments, text, line);
                 let (mut columns, is_header) = columns.map_err(in_file)?;
-                columns.tell_layout();
+                columns.begin_stream(line).map_err(in_file)?;
                 self.frame_rate = self.frame_rate.or(columns.rate());
                 (Kind::Text(Box::new(columns)), is_header)
             };

@@ -9,12 +9,12 @@ use crate::format::choice::ColumnChoice;
 use crate::format::column_names::LengthUnit;
 use crate::format::comments::{is_comment, names_in_comment};
 use crate::format::field::{self, PedestrianField};
-use crate::format::header::{Header, TimeColumn, first_of};
+use crate::format::header::{Header, TimeColumn, first_of, is_camera};
 use crate::format::kind::Format;
 use crate::format::layouts::{Layout, Place};
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::field_count;
-use crate::format::row_filter::RowFilter;
+use crate::format::row_filter::{RowFilter, are_alike};
 use crate::format::rows::TrackRow;
 use crate::format::separator::Separator;
 use crate::scene_name::SceneName;
@@ -45,6 +45,8 @@ pub(super) struct TrackColumns {
     /// Why the first column is read in its unit, if its name does not say so.
     assumed_unit: Option<&'static str>,
     note: Option<&'static str>,
+    /// Whether a row has been read.
+    has_rows: bool,
     /// Whether a stream has told its notes.
     is_told: bool,
 }
@@ -114,6 +116,7 @@ impl TrackColumns {
             numbers: Vec::new(),
             assumed_unit: None,
             note: None,
+            has_rows: false,
             is_told: false,
         }
     }
@@ -241,11 +244,23 @@ impl TrackColumns {
         Ok(Some(read))
     }
 
-    /// Tells that rows without a header are read as those of `social-gan`: a stream has no other evidence.
-    pub(super) fn tell_layout(&mut self) {
+    /// Makes these the columns of a stream: without a header they are those of `social-gan`, which is told because a
+    /// stream has no other evidence; further columns may change at any time, but those of cameras must be named scene.
+    pub(super) fn begin_stream(&mut self, line: usize) -> Result<(), Misread> {
         if self.format == Format::SocialGan && self.separator == Separator::Blanks {
             self.header.remarks.push(UNNAMED.to_owned());
         }
+        if self.format != Format::Table {
+            return Ok(());
+        }
+        self.constants.clear();
+        let is_camera = |index: &&usize| is_camera(&self.names[**index]) && self.header.keep != Some(**index);
+        let Some(index) = self.header.groups.iter().find(is_camera) else {
+            return Ok(());
+        };
+        let name = field::quoted(&self.names[*index]);
+        let problem = format!("rename the column {name} scene, or give --keep {name}=VALUE for one of them");
+        Err(FilePlace::field(line, index + 1).wrong(problem))
     }
 
     /// What a stream has not told yet.
@@ -364,7 +379,9 @@ impl TrackColumns {
             place(index).read(field::number(&fields[index], &self.names[index]))?;
         }
         self.check_constants(fields, line)?;
-        self.check_sizes(fields, line)?;
+        if !std::mem::replace(&mut self.has_rows, true) {
+            self.check_sizes(fields, line)?;
+        }
         let scene = self.header.scene.map(|index| {
             let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
             place(index).read(scene)
@@ -408,7 +425,7 @@ impl TrackColumns {
         for (index, first) in &mut self.constants {
             let found = &*fields[*index];
             let known = &*first.get_or_insert_with(|| found.to_owned());
-            if known == found {
+            if found.is_empty() || are_alike(known, found) {
                 continue;
             }
             let [known, found, name] = [known, found, &self.names[*index]].map(field::quoted);
@@ -422,7 +439,7 @@ impl TrackColumns {
             } else {
                 format!(
                     "{name} changes from {known} to {found}: a file holds one recording; --keep {name}={known} reads \
-                     one of them; for `ddl forecast -` rename the column scene"
+                     one of them"
                 )
             };
             return Err(FilePlace::field(line, *index + 1).wrong(problem));
@@ -433,7 +450,7 @@ impl TrackColumns {
     /// Boxes of KITTI have the size of people where there is a position on the ground.
     fn check_sizes(&self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
         let is_size = |field: &Cow<'_, str>| field.parse().is_ok_and(|size: f64| size > 0.0 && size < 3.0);
-        if self.format != Format::Kitti || fields[10..13].iter().all(is_size) {
+        if self.format != Format::Kitti || !self.filter.is_of_people() || fields[10..13].iter().all(is_size) {
             return Ok(());
         }
         let problem = "the height, width and length (columns 11 to 13) are not those of a person: are these tracks in \

@@ -164,12 +164,12 @@ fn rows_that_go_on_from_a_jump_are_another_track() {
     ] {
         let first = walk((0..20).map(|k| interval * f64::from(k)));
         let again = first[19].0 + gap;
-        let second = walk((0..10).map(|k| again + interval * f64::from(k)));
+        let second = walk((0..6).map(|k| again + interval * f64::from(k)));
         let moved = second
             .into_iter()
             .map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]]));
         let moved: Vec<_> = moved.collect();
-        let seen = observed(&[first, moved].concat(), again + 9.0 * interval);
+        let seen = observed(&[first, moved].concat(), again + 5.0 * interval);
         let [.., before, last] = seen.positions;
         let speed = distance(before, last) / 0.4;
         assert!((1.3..1.45).contains(&speed), "{interval} {gap} {jump:?}: {speed} m/s");

@@ -210,6 +210,9 @@ impl ObservedTrack {
 
     /// Whether a row goes on from the last one in doubt rather than from the track, from which it has this distance (m).
     fn goes_on(&self, row: Row, distance: f64, tick_time: f64, known: &RecordingNoise) -> bool {
+        if distance <= SURPRISE {
+            return false;
+        }
         let expected = |time: f64| {
             self.expected_after((time - self.last_time()) * tick_time, known)
                 .0

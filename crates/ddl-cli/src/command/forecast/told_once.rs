@@ -15,7 +15,7 @@ impl StreamState {
         if let (Some(rate), Some(option)) = (stated.frame_rate, units.rate_given())
             && units.live_clock().ok().flatten() != Clock::with_frame_time(rate.recip()).ok()
         {
-            let note = format_args!("note: read as {option}, although a comment says {rate} frames a second");
+            let note = format_args!("note: read as {option}, although the input says {rate} frames a second");
             self.tell_once("rate", note);
         }
     }
