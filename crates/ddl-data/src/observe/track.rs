@@ -208,7 +208,7 @@ impl ObservedTrack {
         }
     }
 
-    /// Whether a row goes on from the last one in doubt rather than from the track, from which it has this distance (m).
+    /// Whether a row goes on from the last one in doubt rather than from the track, which is this far from it (m).
     fn goes_on(&self, row: Row, distance: f64, tick_time: f64, known: &RecordingNoise) -> bool {
         if distance <= SURPRISE {
             return false;
