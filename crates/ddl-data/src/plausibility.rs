@@ -29,12 +29,12 @@ const MANY_STEPS: usize = 20;
 const NARROW: f64 = 1.5;
 const CROSSED: f64 = 0.2;
 const A_CROWD: usize = 3;
-/// Time (s) at one place and distance (m) to the next of who is seen more seldom than its rows say, and share of rows
-/// that repeat a position.
+/// A tracker repeats its last detection where a track keeps one position for such a time (s) and then moves farther
+/// than this (m). A warning is given from this share of such rows on.
 const STAY: std::ops::RangeInclusive<f64> = 0.19..=1.25;
 const MOVED: f64 = 0.2;
 const OFTEN_REPEATED: f64 = 0.2;
-/// Share of rows at the origin that people who cross it do not have.
+/// Rows at (0, 0) for each measured step above which they are taken for missing positions.
 const PLACEHOLDERS: f64 = 0.05;
 /// Time without any motion (s) that people do not reach, even standing, and speed before it (m/s), of a frozen track.
 const FROZEN: f64 = 4.0;
@@ -63,7 +63,8 @@ pub enum PlausibilityWarning {
     )]
     Slow { brisk: f64 },
     #[error(
-        "{rows} rows of {pedestrians} pedestrians lie exactly at (0, 0); if nobody was seen in them, leave them out"
+        "{rows} rows of {pedestrians} pedestrians have the position (0, 0); if it stands for a missing position, \
+         remove these rows"
     )]
     Placeholders { rows: usize, pedestrians: usize },
     #[error(
@@ -82,8 +83,9 @@ pub enum PlausibilityWarning {
     )]
     Unseen { share: f64 },
     #[error(
-        "{:.0} % of the rows of walking pedestrians repeat the position before, and then they move on; does the \
-         tracker write its last detection again (leave such rows out), or are positions rounded?",
+        "{:.0} % of the rows of walking pedestrians repeat the previous position for up to 1.25 s, and then the \
+         position jumps; if the tracker repeats its last detection, remove the repeated rows; if positions are \
+         rounded, give more digits",
         100.0 * .share
     )]
     Repeated { share: f64 },
@@ -131,7 +133,7 @@ pub(crate) struct Speeds {
     pub(crate) pedestrians: usize,
     /// The longer side of the area of all positions, m.
     pub(crate) side: f64,
-    /// Share of the rows of who walks that repeat the position before.
+    /// Share of rows that repeat the previous position, among tracks that walk.
     repeated: f64,
     /// Rows at the origin, and pedestrians with such rows.
     at_zero: [usize; 2],
@@ -228,7 +230,7 @@ pub(crate) fn restarted(count: usize) -> Option<PlausibilityWarning> {
     (count > 0).then_some(PlausibilityWarning::Restarted { count })
 }
 
-/// Rows that repeat the position before, of stays after which the pedestrian moves on by a step.
+/// Number of rows that repeat the previous position before a jump (see [`STAY`]).
 fn repeats(track: &[&Observation], step: i64) -> usize {
     let same = |a: &&Observation, b: &&Observation| a.position.map(f64::to_bits) == b.position.map(f64::to_bits);
     let stays: Vec<&[&Observation]> = track.chunk_by(same).collect();

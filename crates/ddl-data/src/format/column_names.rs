@@ -154,7 +154,7 @@ pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
         index,
         role,
         time_unit: of_time.filter(|_| role == Role::Time),
-        // `px` alone is a position.
+        // A column called `px` is a coordinate; only a further word, as in `x_px`, is a unit.
         length: unit_of(&LENGTH_UNITS, last).filter(|_| matches!(role, Role::X | Role::Y) && words.len() > 1),
     }
 }

@@ -128,7 +128,7 @@ impl Header {
 }
 
 impl Roles<'_> {
-    /// The column of that role; of several classes the first that is no number of a class.
+    /// The column of that role; of several class columns, the first whose name does not end in `id`.
     fn of(&self, role: Role) -> Option<&Named> {
         let mut found = self.found.iter().filter(|named| named.role == role);
         let is_id =
@@ -137,8 +137,11 @@ impl Roles<'_> {
     }
 
     fn header(&self, choice: &ColumnChoice) -> Result<Header, Fault> {
-        let is_json = self.names[0].starts_with(['{', '[']);
-        if let Some(detail) = self.wide().filter(|_| !is_json) {
+        if self.place().is_none() && self.names[0].starts_with(['{', '[']) {
+            let detail = "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line";
+            return Err((Some(0), detail.to_owned()));
+        }
+        if let Some(detail) = self.wide() {
             return Err((None, detail));
         }
         let mut faults = self.repeated();
@@ -210,7 +213,7 @@ impl Roles<'_> {
                     .to_owned(),
             );
         }
-        // A name of x or y, with z instead.
+        // A known name of the x coordinate, with z for x.
         let is_x = |name: &str| named(0, name).is_some_and(|named| named.role == Role::X);
         let is_height = |name: &&&str| !is_x(name) && is_x(&name.to_ascii_lowercase().replace('z', "x"));
         if let Some(z) = self.names.iter().find(is_height).filter(|_| is_point) {
@@ -304,21 +307,12 @@ impl Roles<'_> {
         faults
     }
 
-    /// A column that says that the rows are no tracks of one scene.
+    /// The column of a table of forecasts.
     fn other_rows(&self) -> Option<Fault> {
-        let plain = |name: &str| words(name).concat();
-        let has_place = self.place().is_some();
-        self.unknown.iter().find_map(|&index| {
-            let name = self.names[index];
-            let detail = match plain(name).as_str() {
-                "observeduntil" => "this is a table of forecasts; give the tracks that they were made from",
-                _ if !has_place && self.names[0].starts_with(['{', '[']) => {
-                    "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line"
-                }
-                _ => return None,
-            };
-            Some((Some(index), format!("column {:?}: {detail}", quoted(name))))
-        })
+        let mut unknown = self.unknown.iter();
+        let index = *unknown.find(|&&index| words(self.names[index]).concat() == "observeduntil")?;
+        let detail = "this is a table of forecasts; give the tracks that they were made from";
+        Some((Some(index), format!("column {:?}: {detail}", quoted(self.names[index]))))
     }
 
     /// Columns for each pedestrian, such as `x1,y1,x2,y2`, instead of rows.

@@ -6,7 +6,7 @@ use ddl_core::Position;
 pub(super) const MOST_ROWS: usize = 10_000;
 /// If the steps of one reading are so many times as long as those of the other, it is wrong.
 const LONGER: f64 = 1.5;
-/// ... and this decides alone.
+/// If they are so many times as long, no other sign is looked at.
 const MUCH_LONGER: f64 = 5.0;
 /// If the tracks of one reading have so many times as many rows as those of the other, it is right.
 const MORE: f64 = 2.0;

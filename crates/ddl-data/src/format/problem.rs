@@ -13,12 +13,12 @@ pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String 
     format!("{found} fields where {expected} are expected ({names})")
 }
 
-pub(super) fn duplicate(pedestrian: impl Display, when: &str, first_line: usize) -> String {
-    let coarse = if when.starts_with("time") {
-        ", or take frame numbers if the times are too coarse (--columns frame=NAME)"
-    } else {
-        ""
-    };
+pub(super) fn duplicate(pedestrian: impl Display, (frame, unit): (i64, Option<TimeUnit>), first_line: usize) -> String {
+    let coarse = unit.map_or(
+        "",
+        |_| ", or take frame numbers if the times are too coarse (--columns frame=NAME)",
+    );
+    let when = when(frame, unit);
     format!("pedestrian {pedestrian} is in {when} already (line {first_line}); keep one row{coarse}")
 }
 

@@ -9,7 +9,7 @@ use crate::error::DataError;
 use crate::format::field::PedestrianField;
 use crate::format::numbering::Numbering;
 use crate::format::place::{FilePlace, Misread};
-use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate, when};
+use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate};
 use crate::observation::Observation;
 use crate::recording::Recording;
 use crate::scene_name::SceneName;
@@ -128,7 +128,7 @@ fn refuse_duplicates(rows: &mut [Placed], names: &PedestrianNames, unit: Option<
         None => Ok(()),
         Some(pair) => {
             let (frame, pedestrian) = key(&pair[1]);
-            let problem = duplicate(names.of(pedestrian), &when(frame, unit), pair[0].1.line_number());
+            let problem = duplicate(names.of(pedestrian), (frame, unit), pair[0].1.line_number());
             Err(pair[1].1.wrong(problem))
         }
     }

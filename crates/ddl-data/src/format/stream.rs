@@ -339,7 +339,7 @@ impl<R: BufRead> FrameReader<R> {
         if let Some(&first_line) = growing.and_then(|growing| growing.lines.get(&pedestrian)) {
             let word = word.map(|word| PedestrianName::Word(word.to_string()));
             let name = word.unwrap_or(pedestrian.into());
-            return Err(self.wrong(duplicate(name, &when(seen.frame, seen.unit), first_line)));
+            return Err(self.wrong(duplicate(name, (seen.frame, seen.unit), first_line)));
         }
         // A returned frame makes room for a pedestrian.
         if self.unfinished == limit {

@@ -420,12 +420,15 @@ impl TrackColumns {
         }
     }
 
-    /// Fields of a constant are written alike.
+    /// Checks that each constant column keeps its first value; empty fields do not count.
     fn check_constants(&mut self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
         for (index, first) in &mut self.constants {
             let found = &*fields[*index];
+            if found.is_empty() {
+                continue;
+            }
             let known = &*first.get_or_insert_with(|| found.to_owned());
-            if found.is_empty() || are_alike(known, found) {
+            if are_alike(known, found) {
                 continue;
             }
             let [known, found, name] = [known, found, &self.names[*index]].map(field::quoted);
@@ -447,7 +450,7 @@ impl TrackColumns {
         Ok(())
     }
 
-    /// Boxes of KITTI have the size of people where there is a position on the ground.
+    /// Checks that the box of a KITTI row has the size of a person: only then it has a position on the ground.
     fn check_sizes(&self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
         let is_size = |field: &Cow<'_, str>| field.parse().is_ok_and(|size: f64| size > 0.0 && size < 3.0);
         if self.format != Format::Kitti || !self.filter.is_of_people() || fields[10..13].iter().all(is_size) {

@@ -148,7 +148,8 @@ fn the_rows_that_are_kept_are_bounded() {
     assert!(farthest(&found, &expected) < 0.01, "{found:?}");
 }
 
-/// Another pedestrian under the same id, after some time without rows: the track begins anew there, and nobody runs.
+/// If another pedestrian takes over an id, after a gap or at once, a new track begins with the speed of the new
+/// pedestrian (1.36 m/s). The last case is the same pedestrian after a gap.
 #[test]
 fn rows_that_go_on_from_a_jump_are_another_track() {
     for (interval, gap, jump) in [

@@ -22,7 +22,8 @@ const SHOW_SPEED: usize = 3;
 /// Faster than this (m/s) a pedestrian is only believed after this time (s).
 const BRISK: f64 = 3.5;
 const SHORT: f64 = 0.35;
-/// Speed (m/s) that any pedestrian reaches, and what is added to 1.3 times its own: the top speed of forecasts.
+/// Least top speed (m/s), and factor and margin (m/s) from the own speed to the top speed, as in the `MotionBounds` of
+/// `ddl-dynamics`.
 const WALKING: f64 = 2.15;
 const FASTER: [f64; 2] = [1.3, 0.45];
 /// Time (s) for which the fastest speed counts.
@@ -208,7 +209,8 @@ impl ObservedTrack {
         }
     }
 
-    /// Whether a row goes on from the last one in doubt rather than from the track, which is this far from it (m).
+    /// Whether a row is nearer to the continuation of the last doubtful row than to the position expected of the track,
+    /// which is `distance` (m) away.
     fn goes_on(&self, row: Row, distance: f64, tick_time: f64, known: &RecordingNoise) -> bool {
         if distance <= SURPRISE {
             return false;

@@ -1,12 +1,12 @@
 //! The results of several runs as one report with its page and figures.
 
 use crate::error::DdlError;
-use crate::evaluation::record::{MeasuredRecording, measured_recordings};
+use crate::evaluation::record::measured_recordings;
 use crate::run::directory::{RunDirectory, read_json, write_atomically, write_compact_json};
-use ddl_data::Convention;
 use ddl_report::page::Page;
 use ddl_report::{ForecastSnapshot, Report};
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Results of evaluated runs and of other programs' forecasts, with windows for display.
 #[derive(Debug, Clone)]
@@ -38,7 +38,7 @@ impl Results {
         };
         let mut headline: Vec<(u64, Vec<ForecastSnapshot>)> = Vec::new();
         let mut elsewhere = Vec::new();
-        let mut recordings = Vec::new();
+        let mut recordings = BTreeMap::new();
         for folder in folders {
             let run = RunDirectory::new(folder.as_ref());
             if !run.report().is_file() {
@@ -56,7 +56,20 @@ impl Results {
             }
             let config = run.config()?;
             for recording in measured_recordings(&run) {
-                add_recording(&mut recordings, recording, config.data.convention, &run)?;
+                let name = (config.data.convention, recording.name);
+                let (sha256, folder) = recordings
+                    .entry(name.clone())
+                    .or_insert_with(|| (recording.sha256.clone(), run.path().to_owned()));
+                if *sha256 != recording.sha256 {
+                    // A mean over both would mean nothing.
+                    let problem = format!(
+                        "was evaluated on another recording {:?} than {}; evaluate both on the same recordings, or \
+                         report them apart",
+                        name.1,
+                        folder.display()
+                    );
+                    return Err(DdlError::run(run.path(), problem));
+                }
             }
             if config.star.name() == ddl_network::Variant::Full.name() {
                 headline.push((config.training.seed, read_moments(&run)?));
@@ -98,35 +111,6 @@ impl Results {
         }
         write_atomically(&folder.join("report.html"), page.to_html()?.as_bytes())
     }
-}
-
-/// Adds a recording, unless it is known.
-///
-/// # Errors
-/// When another recording of the convention has its name: a mean over both would mean nothing.
-fn add_recording(
-    known: &mut Vec<(Convention, MeasuredRecording, PathBuf)>,
-    recording: MeasuredRecording,
-    convention: Convention,
-    run: &RunDirectory,
-) -> Result<(), DdlError> {
-    let name = &recording.name;
-    match known
-        .iter()
-        .find(|(of, other, _)| *of == convention && other.name == *name)
-    {
-        Some((_, other, folder)) if other.sha256 != recording.sha256 => {
-            let folder = folder.display();
-            let problem = format!(
-                "was evaluated on another recording {name:?} than {folder}; evaluate both on the same recordings, or \
-                 report them apart"
-            );
-            return Err(DdlError::run(run.path(), problem));
-        }
-        Some(_) => {}
-        None => known.push((convention, recording, run.path().to_owned())),
-    }
-    Ok(())
 }
 
 /// The moments of a run; empty when there are none.

@@ -207,7 +207,7 @@ impl StreamOptions {
             ));
         } else if bytes > LARGE {
             tell(format_args!(
-                "note: {} MiB, because all pedestrians are forecast from every frame; --last gives the last one",
+                "note: {} MiB, because all pedestrians are forecast from every frame; --last takes the last alone",
                 bytes >> 20
             ));
         }
