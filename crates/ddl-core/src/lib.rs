@@ -4,6 +4,7 @@ mod error;
 mod forecast;
 mod forecaster;
 pub mod motion;
+mod names;
 mod pace;
 mod pedestrian;
 mod position;
@@ -18,6 +19,7 @@ mod work_done;
 pub use error::{ForecastError, ForecastShapeError, WindowError};
 pub use forecast::{Forecast, Spread};
 pub use forecaster::Forecaster;
+pub use names::UnknownName;
 pub use pace::{Pace, mean_speed};
 pub use pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 pub use position::{

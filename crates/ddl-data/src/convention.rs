@@ -1,14 +1,11 @@
 //! Data conventions. Published tables mix them; this crate keeps them apart.
 
-use std::fmt;
-use std::str::FromStr;
 use std::sync::LazyLock;
 
 use serde::{Deserialize, Serialize};
 
 use crate::format::Format;
 use crate::rule::{SOCIAL_GAN_FEWEST, WindowRule};
-use crate::unknown_name::UnknownName;
 
 /// Source and sampling of the recordings. Numbers of different conventions are not comparable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -26,19 +23,6 @@ pub enum Convention {
 }
 
 impl Convention {
-    /// Every convention, in order of preference.
-    pub const ALL: [Self; 4] = [Self::Star, Self::SocialGan, Self::Simulated, Self::Own];
-
-    /// The name of the convention, which is also the name of the folder with its files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Star => "star",
-            Self::SocialGan => "social-gan",
-            Self::Simulated => "simulated",
-            Self::Own => "own",
-        }
-    }
-
     /// The file format of the convention; `None` for conventions without files of fixed names.
     pub(crate) fn format(self) -> Option<Format> {
         match self {
@@ -88,20 +72,11 @@ impl Convention {
     }
 }
 
-impl fmt::Display for Convention {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
-
-impl FromStr for Convention {
-    type Err = UnknownName;
-
-    fn from_str(word: &str) -> Result<Self, UnknownName> {
-        let expected = "star, social-gan, simulated, own";
-        UnknownName::find(word, &Self::ALL, Self::name, "data convention", expected)
-    }
-}
+// In order of preference; the folders of a convention's files have its name.
+ddl_core::named!(
+    Convention, "data convention",
+    Star => "star", SocialGan => "social-gan", Simulated => "simulated", Own => "own"
+);
 
 /// One convention of `folds.json`: its recordings, and the recordings that each leave-one-out fold tests on. A fold
 /// trains on all other recordings, in the order listed.

@@ -89,7 +89,6 @@ mod scene_name;
 mod simulate;
 mod spatial_index;
 mod summary;
-mod unknown_name;
 mod windows;
 
 pub use atomic_file::{remove_temporary_files, write_atomically, write_atomically_with};
@@ -121,4 +120,3 @@ pub use rule::WindowRule;
 pub use scene_name::SceneName;
 pub use spatial_index::SpatialIndex;
 pub use summary::{Gap, Summary};
-pub use unknown_name::UnknownName;

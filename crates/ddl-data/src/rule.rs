@@ -3,9 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use ddl_core::UnknownName;
 use serde::{Deserialize, Serialize};
-
-use crate::unknown_name::UnknownName;
 
 /// Smallest number of pedestrians per window in the original code of Social-GAN.
 pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;

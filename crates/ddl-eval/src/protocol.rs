@@ -1,9 +1,8 @@
 //! Evaluation protocols: the input that a forecaster sees, and its number of hypotheses.
 
-use std::{borrow::Cow, fmt, str::FromStr};
+use std::borrow::Cow;
 
 use ddl_core::{Forecast, ForecastError, Forecaster, Window};
-use ddl_data::UnknownName;
 use serde::{Deserialize, Serialize};
 
 /// An evaluation protocol. Numbers of different protocols are not comparable.
@@ -27,28 +26,6 @@ pub enum Protocol {
 impl Protocol {
     /// The greatest number of hypotheses that any protocol allows: 20.
     pub(crate) const MAX_HYPOTHESES: usize = 20;
-
-    /// All protocols, in display order.
-    pub const ALL: [Self; 6] = [
-        Self::Published,
-        Self::Fair,
-        Self::Single,
-        Self::Online,
-        Self::OnlineSingle,
-        Self::Joint,
-    ];
-
-    /// `published`, `fair`, `single`, `online`, `online-single` or `joint`.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Published => "published",
-            Self::Fair => "fair",
-            Self::Single => "single",
-            Self::Online => "online",
-            Self::OnlineSingle => "online-single",
-            Self::Joint => "joint",
-        }
-    }
 
     /// The names of the two errors that its tables begin with: [`Scores::errors`](crate::Scores::errors).
     pub const fn errors(self) -> [&'static str; 2] {
@@ -175,17 +152,8 @@ impl Protocol {
     }
 }
 
-impl fmt::Display for Protocol {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Protocol {
-    type Err = UnknownName;
-
-    fn from_str(word: &str) -> Result<Self, UnknownName> {
-        let expected = "published, fair, single, online, online-single, joint";
-        UnknownName::find(word, &Self::ALL, Self::name, "protocol", expected)
-    }
-}
+ddl_core::named!(
+    Protocol, "protocol",
+    Published => "published", Fair => "fair", Single => "single", Online => "online",
+    OnlineSingle => "online-single", Joint => "joint"
+);

@@ -1,6 +1,6 @@
 //! The device that a network runs on.
 
-use crate::names::named;
+use ddl_core::named;
 use serde::{Deserialize, Serialize};
 
 /// The requested device.

@@ -84,7 +84,6 @@ mod device;
 mod error;
 mod forecast;
 mod kernel;
-mod names;
 pub mod proposal;
 pub mod seed;
 mod training_report;

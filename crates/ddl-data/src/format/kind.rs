@@ -1,7 +1,5 @@
 //! The supported formats.
 
-use std::fmt;
-
 /// Format of a file of tracks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
@@ -47,35 +45,15 @@ pub enum Format {
     Edinburgh,
 }
 
-/// Implements `ALL` and `name` for the formats.
-macro_rules! named {
-    ($($format:ident $name:literal,)*) => {
-        impl Format {
-            /// Every format that is read.
-            pub const ALL: [Self; 16] = [$(Self::$format),*];
-
-            /// The format's name.
-            pub fn name(self) -> &'static str {
-                match self {
-                    $(Self::$format => $name,)*
-                }
-            }
-        }
-    };
-}
-named! {
-    StarCsv "star-csv", SocialGan "social-gan", Table "table", TrajNet "trajnet", Obsmat "obsmat", IdFirst "id-first",
-    PeTrack "petrack", PeTrackCm "petrack-cm", Sdd "sdd", Mot "mot", MotTruth "mot-truth", Atc "atc", Kitti "kitti",
-    ApolloScape "apolloscape", Vsp "vsp", Edinburgh "edinburgh",
-}
+ddl_core::named!(
+    Format, "format",
+    StarCsv => "star-csv", SocialGan => "social-gan", Table => "table", TrajNet => "trajnet", Obsmat => "obsmat",
+    IdFirst => "id-first", PeTrack => "petrack", PeTrackCm => "petrack-cm", Sdd => "sdd", Mot => "mot",
+    MotTruth => "mot-truth", Atc => "atc", Kitti => "kitti", ApolloScape => "apolloscape", Vsp => "vsp",
+    Edinburgh => "edinburgh"
+);
 
 impl Format {
     /// Every format that is also written.
     pub const WRITTEN: [Self; 5] = [Self::StarCsv, Self::SocialGan, Self::Table, Self::TrajNet, Self::Obsmat];
-}
-
-impl fmt::Display for Format {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
 }

@@ -3,7 +3,7 @@
 use crate::NetworkError;
 use crate::config::range::{at_least_one, not_negative, positive, require};
 use crate::config::variant::Variant;
-use crate::names::named;
+use ddl_core::named;
 use serde::{Deserialize, Serialize};
 
 /// Schedule of Adam's step size over the training.
@@ -36,7 +36,7 @@ impl LearningRateSchedule {
     }
 }
 
-named!(LearningRateSchedule, "learning_rate_schedule", Constant => "constant", Cosine => "cosine");
+named!(LearningRateSchedule, "learning-rate schedule", Constant => "constant", Cosine => "cosine");
 
 /// The training objective.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,6 +1,6 @@
 //! The four variants of the paper's ablation, and the backbones.
 
-use crate::names::named;
+use ddl_core::named;
 use serde::{Deserialize, Serialize};
 
 /// The four rows of the paper's Table II: goal shift (A) and dynamics (B), each on or off.
@@ -18,9 +18,6 @@ pub enum Variant {
 }
 
 impl Variant {
-    /// All variants, in the order of the paper's Table II.
-    pub const ALL: [Self; 4] = [Self::Star, Self::NoGoalShift, Self::NoDynamics, Self::Full];
-
     /// Whether the temporal encoders read positions relative to the goal (eq. 10). If not: relative to the last
     /// observed position.
     pub fn goal_shift(self) -> bool {
@@ -38,7 +35,8 @@ impl Variant {
     }
 }
 
-named!(Variant, "variant", Full => "full", NoGoalShift => "no-goal-shift", NoDynamics => "no-dynamics", Star => "star");
+// In the order of the paper's Table II.
+named!(Variant, "variant", Star => "star", NoGoalShift => "no-goal-shift", NoDynamics => "no-dynamics", Full => "full");
 
 /// The network behind the shared rollout, which turns observed and forecast positions into features.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -49,11 +47,6 @@ pub enum BackboneKind {
     Star,
     /// A small perceptron on the goal offset and the observed velocities, without interaction between pedestrians.
     Perceptron,
-}
-
-impl BackboneKind {
-    /// All backbones.
-    pub const ALL: [Self; 2] = [Self::Star, Self::Perceptron];
 }
 
 named!(BackboneKind, "backbone", Star => "star", Perceptron => "perceptron");
