@@ -92,7 +92,9 @@ pub fn parse_columns(
     choice: &ColumnChoice,
 ) -> Result<Recording, DataError> {
     let read = rows_of(bytes, format, choice).map_err(|error| error.in_file(origin))?;
-    let mut recording = rows::into_recording(read.rows, origin)?;
+    let columns = read.columns.as_ref();
+    let advice_on_same = |lines| TextFile::advice_on_same(columns, bytes, lines);
+    let mut recording = rows::into_recording(read.rows, origin, advice_on_same)?;
     // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
     recording.rate = match (read.rate, recording.time_unit()) {
         (_, Some(_)) => None,
@@ -128,6 +130,7 @@ fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFi
         rows,
         notes: Vec::new(),
         rate,
+        columns: None,
     };
     match format {
         Format::StarCsv => Ok(without_notes(star_csv::parse(text)?, None)),

@@ -64,5 +64,6 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
         rows,
         notes: notes.collect(),
         rate: Some(RATE),
+        columns: None,
     })
 }

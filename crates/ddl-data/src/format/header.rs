@@ -51,8 +51,8 @@ pub(super) struct Header {
     pub(super) lost: Option<usize>,
     /// Columns whose value must stay the same: others belong to other recordings.
     pub(super) groups: Vec<usize>,
-    /// Names of further columns.
-    pub(super) unread: Vec<String>,
+    /// Further columns.
+    pub(super) unread: Vec<usize>,
     /// What the reader should know of the choice of columns.
     pub(super) remarks: Vec<String>,
 }
@@ -110,8 +110,8 @@ impl Header {
         if let Some(rest) = nanoseconds_beside(&plain, header.frame) {
             header.time = TimeColumn::Known(Some(TimeUnit::Seconds));
             header.nanoseconds = Some(rest);
+            header.unread.retain(|&index| index != rest);
             let [first, rest] = [header.frame, rest].map(|index| quoted(names[index]));
-            header.unread.retain(|name| *name != rest);
             header
                 .remarks
                 .push(format!("the times are {first} and {rest} together"));
@@ -194,7 +194,7 @@ impl Roles<'_> {
                 None => unread.iter().copied().filter(|&index| self.is_group(index)).collect(),
             },
             keep: choice.keep.as_ref().and_then(|(name, _)| self.kept(name)),
-            unread: unread.into_iter().map(|index| quoted(self.names[index])).collect(),
+            unread,
         })
     }
 

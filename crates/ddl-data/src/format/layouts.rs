@@ -37,6 +37,15 @@ pub(super) enum Place {
     FootOfCorners([usize; 4]),
 }
 
+impl Place {
+    pub(super) fn columns(&self) -> &[usize] {
+        match self {
+            Self::Point(columns) => columns,
+            Self::Centre(columns) | Self::Foot(columns) | Self::FootOfCorners(columns) => columns,
+        }
+    }
+}
+
 const METRES: Option<f64> = Some(1.0);
 
 const PLAIN: Layout = Layout {

@@ -47,6 +47,15 @@ pub(super) struct Misread {
 }
 
 impl Misread {
+    pub(super) fn is_in_line(&self, line: usize) -> bool {
+        self.place.line_number() == line
+    }
+
+    pub(super) fn and(mut self, advice: &str) -> Self {
+        self.problem += advice;
+        self
+    }
+
     pub(super) fn in_file(self, origin: &str) -> FormatError {
         FormatError {
             origin: origin.to_owned(),

@@ -43,10 +43,15 @@ impl TrackRow {
 
 type Placed = (Observation, FilePlace);
 
-/// The recording of all rows, with an inferred frame step.
-pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {
+/// The recording of all rows, with an inferred frame step. `advice_on_same` is advice on two lines with one pedestrian in
+/// one frame.
+pub(super) fn into_recording(
+    rows: Vec<TrackRow>,
+    origin: &str,
+    advice_on_same: impl Fn([usize; 2]) -> String,
+) -> Result<Recording, DataError> {
     let (restarts, unit) = (restarts(&rows), rows.first().and_then(|row| row.unit));
-    let (observations, names) = observations(rows, unit).map_err(|error| error.in_file(origin))?;
+    let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.in_file(origin))?;
     let recording = Recording::in_usual_step(origin, observations);
     let mut recording = recording.map_err(|source| DataError::Recording {
         name: origin.to_owned(),
@@ -57,7 +62,11 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
 }
 
 /// The observations of the rows of one recording, all of this unit, each pedestrian at most once in a frame.
-fn observations(rows: Vec<TrackRow>, unit: Option<TimeUnit>) -> Result<(Vec<Observation>, PedestrianNames), Misread> {
+fn observations(
+    rows: Vec<TrackRow>,
+    unit: Option<TimeUnit>,
+    advice_on_same: impl Fn([usize; 2]) -> String,
+) -> Result<(Vec<Observation>, PedestrianNames), Misread> {
     if rows.is_empty() {
         return Err(FilePlace::line(1).wrong(EMPTY));
     }
@@ -70,7 +79,12 @@ fn observations(rows: Vec<TrackRow>, unit: Option<TimeUnit>) -> Result<(Vec<Obse
         return Err(row.place.wrong(MIXED_TIMES));
     }
     let (mut placed, names) = numbered(rows);
-    refuse_duplicates(&mut placed, &names, unit)?;
+    if let Some([first, again]) = first_duplicate(&mut placed) {
+        let (seen, place) = again;
+        let lines = [first.1, *place].map(FilePlace::line_number);
+        let problem = duplicate(names.of(seen.pedestrian), (seen.frame, unit), lines[0]);
+        return Err(place.wrong(problem + &advice_on_same(lines)));
+    }
     Ok((placed.into_iter().map(|(seen, _)| seen).collect(), names))
 }
 
@@ -119,17 +133,10 @@ fn restarts(rows: &[TrackRow]) -> usize {
     }
 }
 
-/// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.
-fn refuse_duplicates(rows: &mut [Placed], names: &PedestrianNames, unit: Option<TimeUnit>) -> Result<(), Misread> {
+/// Sorts the rows by frame and pedestrian, and finds the first of the file that repeats both of another.
+fn first_duplicate(rows: &mut [Placed]) -> Option<&[Placed; 2]> {
     let key = |(seen, _): &Placed| (seen.frame, seen.pedestrian);
     rows.sort_unstable_by_key(|row| (key(row), row.1));
-    let pairs = rows.windows(2).filter(|pair| key(&pair[0]) == key(&pair[1]));
-    match pairs.min_by_key(|pair| pair[1].1) {
-        None => Ok(()),
-        Some(pair) => {
-            let (frame, pedestrian) = key(&pair[1]);
-            let problem = duplicate(names.of(pedestrian), (frame, unit), pair[0].1.line_number());
-            Err(pair[1].1.wrong(problem))
-        }
-    }
+    let pairs = rows.array_windows().filter(|[first, again]| key(first) == key(again));
+    pairs.min_by_key(|[_, again]| again.1)
 }

@@ -2,14 +2,18 @@
 
 use crate::format::choice::ColumnChoice;
 use crate::format::comments::{is_comment, rate_of};
+use crate::format::header::Header;
 use crate::format::kind::Format;
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
+use crate::format::separator::Separator;
 use crate::format::track_columns::TrackColumns;
 
 /// Rows for which memory is reserved before they are read.
 const MOST_RESERVED: usize = 1 << 20;
+/// Lines of titles above the header that are looked at.
+const MOST_TITLES: usize = 50;
 /// Bytes of the shortest row.
 const SHORTEST_ROW: usize = 7;
 
@@ -19,11 +23,37 @@ pub(super) struct TextFile {
     pub(super) notes: Vec<String>,
     /// Frames a second (TrajNet++: rows), if the file states it.
     pub(super) rate: Option<f64>,
+    pub(super) columns: Option<TrackColumns>,
+}
+
+impl TextFile {
+    /// What else may be done about a pedestrian that is twice in one frame, in these lines.
+    pub(super) fn advice_on_same(columns: Option<&TrackColumns>, bytes: &[u8], lines: [usize; 2]) -> String {
+        let text = String::from_utf8_lossy(bytes);
+        let row = |line: usize| text.split(end_of_lines(&text)).nth(line - 1).unwrap_or_default();
+        columns.map_or_else(String::new, |columns| columns.advice_on_same(lines.map(row)))
+    }
+}
+
+/// Old spreadsheets end lines with a carriage return alone.
+fn end_of_lines(text: &str) -> char {
+    if text.contains('\n') { '\n' } else { '\r' }
+}
+
+/// The number of a line below this one that names the columns of a table: titles stand above it.
+fn header_below(text: &str, line: usize, choice: &ColumnChoice) -> Option<usize> {
+    let mut below = (1..).zip(text.split(end_of_lines(text))).skip(line).take(MOST_TITLES);
+    let is_header = |text: &str| {
+        let fields = Separator::of(text).fields(text, line);
+        fields.is_ok_and(|fields| Header::of(&fields.iter().map(|field| &**field).collect::<Vec<_>>(), choice).is_ok())
+    };
+    below
+        .find(|(_, text)| !text.trim().is_empty() && is_header(text))
+        .map(|(below, _)| below)
 }
 
 pub(super) fn parse(text: &str, format: Format, choice: &ColumnChoice) -> Result<TextFile, Misread> {
-    // Old spreadsheets end lines with a carriage return alone.
-    let end = if text.contains('\n') { '\n' } else { '\r' };
+    let end = end_of_lines(text);
     let mut lines = (1..).zip(text.split(end)).filter(|(_, text)| !text.trim().is_empty());
     let mut comments = Vec::new();
     let (first_line, first) = loop {
@@ -33,11 +63,19 @@ pub(super) fn parse(text: &str, format: Format, choice: &ColumnChoice) -> Result
             Some(line) => break line,
         }
     };
-    let (mut columns, is_header) = TrackColumns::of((format, choice), &comments, first, first_line)?;
+    let of_titles = |wrong: Misread| match header_below(text, first_line, choice) {
+        Some(below) if wrong.is_in_line(first_line) => {
+            wrong.and(&format!("; line {below} names the columns: delete the lines above it"))
+        }
+        _ => wrong,
+    };
+    let columns = TrackColumns::of((format, choice), &comments, first, first_line);
+    let (mut columns, is_header) = columns.map_err(of_titles)?;
     let first = (!is_header).then_some((first_line, first));
     let rows = first.into_iter().chain(lines);
     let ends = text.bytes().filter(|&byte| byte == end as u8).count();
-    let read = columns.all_rows(rows, (ends + 1).min(text.len() / SHORTEST_ROW).min(MOST_RESERVED))?;
+    let read = columns.all_rows(rows, (ends + 1).min(text.len() / SHORTEST_ROW).min(MOST_RESERVED));
+    let read = read.map_err(of_titles)?;
     if read.is_empty()
         && let Some(rows) = columns.left_out()
     {
@@ -47,5 +85,6 @@ pub(super) fn parse(text: &str, format: Format, choice: &ColumnChoice) -> Result
         rows: read,
         notes: columns.notes_of_file(),
         rate: comments.iter().find_map(|comment| rate_of(comment)).or(columns.rate()),
+        columns: Some(columns),
     })
 }

@@ -294,7 +294,7 @@ impl TrackColumns {
         let mut notes: Vec<String> = self.note.into_iter().map(str::to_owned).collect();
         notes.extend(self.header.remarks.iter().cloned());
         notes.extend(self.assumed_unit.map(str::to_owned));
-        match &self.header.unread[..] {
+        match &self.quoted(self.header.unread.iter().copied())[..] {
             [] => {}
             [name] => notes.push(format!("the column {name} is not read")),
             names => notes.push(format!("the columns {} are not read", first_of(names))),
@@ -461,10 +461,26 @@ impl TrackColumns {
         Err(FilePlace::field(line, 11).wrong(problem))
     }
 
+    /// What else may be done about two rows of a pedestrian in one frame: they may be of several recordings.
+    pub(super) fn advice_on_same(&self, rows: [&str; 2]) -> String {
+        let [first, again] = rows.map(|row| self.separator.fields(row, 1).unwrap_or_default());
+        let differs = |index: &usize| first.get(*index) != again.get(*index);
+        let apart: Vec<usize> = self.header.unread.iter().copied().filter(differs).collect();
+        let value = apart.first().and_then(|&index| first.get(index));
+        value.map_or_else(String::new, |value| {
+            let (names, value) = (self.quoted(apart.iter().copied()), field::quoted(value));
+            let (all, name) = (first_of(&names), &names[0]);
+            format!("; if recordings are told apart by {all}, read one of them (--keep {name}={value})")
+        })
+    }
+
+    fn quoted(&self, columns: impl Iterator<Item = usize>) -> Vec<String> {
+        columns.map(|index| field::quoted(&self.names[index])).collect()
+    }
+
     fn wrong_count(&self, found: usize) -> String {
         let expected = self.names.len();
-        let names: Vec<String> = self.names.iter().map(|name| field::quoted(name)).collect();
-        let names = first_of(&names);
+        let names = first_of(&self.quoted(0..expected));
         let advice = match self.separator {
             Separator::Blanks if self.format == Format::SocialGan && found == 3 => OF_ONE,
             _ if found == 1 => "; the fields are not separated like those of the first line",
@@ -474,14 +490,5 @@ impl TrackColumns {
             _ => "",
         };
         field_count(expected, found, &names) + advice
-    }
-}
-
-impl Place {
-    pub(super) fn columns(&self) -> &[usize] {
-        match self {
-            Self::Point(columns) => columns,
-            Self::Centre(columns) | Self::Foot(columns) | Self::FootOfCorners(columns) => columns,
-        }
     }
 }

@@ -73,6 +73,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
         rows,
         notes: std::iter::once(NOTE.to_owned()).chain(pixels).chain(left_out).collect(),
         rate: Some(RATE),
+        columns: None,
     })
 }
 
