@@ -11,7 +11,8 @@ use crate::format::layouts::Place;
 
 /// Names of columns that tell the recordings of one file apart.
 const GROUPS: &str = "recording recordingid video videoid videoname clipid sequenceid sequencename session sessionid \
-                      runid trialid caseid camera cameraid cam camid sceneid scenename";
+                      runid trial trialid experiment experimentid caseid floor floorid camera cameraid cam camid \
+                      sceneid scenename";
 /// Of these, those that a stream may call `scene`.
 const CAMERAS: &str = "camera cameraid cam camid sceneid scenename";
 /// Most faults of columns that say the same in a message.
