@@ -18,6 +18,7 @@ use ddl::GivenPlan;
 use ddl::data::{OBSERVED, PedestrianId, Window};
 use ddl::scene::{Plan, PlanPoint};
 use std::ffi::c_char;
+use std::mem::MaybeUninit;
 
 /// The version of the library, such as "0.2.0".
 #[unsafe(no_mangle)]
@@ -53,13 +54,13 @@ pub extern "C" fn ddl_reserve(bytes: usize) -> ddl_status {
 pub unsafe extern "C" fn ddl_model_open(
     name: *const c_char,
     threads: usize,
-    model: Option<&mut *mut ddl_model>,
+    model: Option<&mut MaybeUninit<*mut ddl_model>>,
 ) -> ddl_status {
     guarded(|| {
         // SAFETY: a text of the caller.
         let name = needed(unsafe { text(name, "name")? }, "name")?;
         let model = needed(model, "model")?;
-        *model = Box::into_raw(Box::new(ddl_model(Model::open(name, threads)?)));
+        model.write(Box::into_raw(Box::new(ddl_model(Model::open(name, threads)?))));
         Ok(())
     })
 }
@@ -115,14 +116,16 @@ pub unsafe extern "C" fn ddl_model_forecast(
 pub unsafe extern "C" fn ddl_live_new(
     model: Option<&ddl_model>,
     options: Option<&ddl_live_options<'_>>,
-    live: Option<&mut *mut ddl_live>,
+    live: Option<&mut MaybeUninit<*mut ddl_live>>,
 ) -> ddl_status {
     guarded(|| {
         let (model, options, live) = (needed(model, "model")?, options.copied(), needed(live, "live")?);
         let options = options.unwrap_or_default();
         // SAFETY: a text of the caller.
         let memory = unsafe { text(options.memory, "memory")? };
-        *live = Box::into_raw(Box::new(ddl_live(Live::new(&model.0, &options, memory)?)));
+        live.write(Box::into_raw(Box::new(ddl_live(Live::new(
+            &model.0, &options, memory,
+        )?))));
         Ok(())
     })
 }
@@ -184,11 +187,11 @@ pub extern "C" fn ddl_forecast_view(forecast: Option<&ddl_forecast>) -> Option<&
 pub extern "C" fn ddl_forecast_radii(
     forecast: Option<&mut ddl_forecast>,
     level: f64,
-    radii: Option<&mut *const f64>,
+    radii: Option<&mut MaybeUninit<*const f64>>,
 ) -> ddl_status {
     guarded(|| {
         let (forecast, radii) = (&mut needed(forecast, "forecast")?.0, needed(radii, "radii")?);
-        *radii = forecast.compute_radii(level)?;
+        radii.write(forecast.compute_radii(level)?);
         Ok(())
     })
 }
@@ -204,7 +207,7 @@ pub unsafe extern "C" fn ddl_forecast_risks(
     within: f64,
     ego: Option<&i64>,
     unseen: bool,
-    risks: Option<&mut *const ddl_risks>,
+    risks: Option<&mut MaybeUninit<*const ddl_risks>>,
 ) -> ddl_status {
     guarded(|| {
         let (forecast, risks) = (&mut needed(forecast, "forecast")?.0, needed(risks, "risks")?);
@@ -213,7 +216,7 @@ pub unsafe extern "C" fn ddl_forecast_risks(
             .iter()
             .map(|plan| unsafe { planned(plan) });
         forecast.compute_risks(&plans.collect::<Result<Vec<_>, _>>()?, within, ego.copied(), !unseen)?;
-        *risks = &raw const forecast.risks;
+        risks.write(&raw const forecast.risks);
         Ok(())
     })
 }
@@ -224,12 +227,12 @@ pub unsafe extern "C" fn ddl_forecast_risks(
 pub extern "C" fn ddl_forecast_occupancy(
     forecast: Option<&mut ddl_forecast>,
     cells: Option<&ddl_cells<'_>>,
-    occupancy: Option<&mut *const ddl_occupancy>,
+    occupancy: Option<&mut MaybeUninit<*const ddl_occupancy>>,
 ) -> ddl_status {
     guarded(|| {
         let (forecast, occupancy) = (&mut needed(forecast, "forecast")?.0, needed(occupancy, "occupancy")?);
         forecast.compute_occupancy(needed(cells, "cells")?)?;
-        *occupancy = &raw const forecast.occupancy;
+        occupancy.write(&raw const forecast.occupancy);
         Ok(())
     })
 }

@@ -4,11 +4,12 @@
 
 use crate::boundary::guarded;
 use crate::functions::*;
-use crate::layout::{ddl_observation, ddl_point, ddl_request, ddl_status};
+use crate::layout::{ddl_model, ddl_observation, ddl_point, ddl_request, ddl_status};
 use ddl::data::{Clock, Completeness, LiveTracks, PedestrianId, TimeUnit};
 use ddl::{AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, LiveForecaster};
 use std::ffi::CStr;
-use std::{ptr, slice};
+use std::mem::MaybeUninit;
+use std::slice;
 
 const PEOPLE: usize = 6;
 
@@ -29,12 +30,13 @@ fn live_tracks_have_the_bits_of_the_facade() {
     let expected = LiveForecaster::with_tracks(model, tracks);
     let mut expected = expected.with_adaptive_regions(AdaptiveRegions::default());
 
-    let (mut model, mut live, mut forecast) = (ptr::null_mut(), ptr::null_mut(), ddl_forecast_new());
-    // SAFETY: a text and addresses of this function; each handle is freed once.
+    let (mut model, mut live, mut forecast) = (MaybeUninit::uninit(), MaybeUninit::uninit(), ddl_forecast_new());
+    // SAFETY: a text and addresses of this function, written where the status is OK; each handle is freed once.
     let (model, live) = unsafe {
         assert_eq!(ddl_model_open(c"world".as_ptr(), 1, Some(&mut model)), ddl_status::OK);
+        let model: *mut ddl_model = model.assume_init();
         assert_eq!(ddl_live_new(model.as_ref(), None, Some(&mut live)), ddl_status::OK);
-        (Box::from_raw(model), Box::from_raw(live))
+        (Box::from_raw(model), Box::from_raw(live.assume_init()))
     };
     ddl_model_free(Some(model));
     for tick in 0..30 {
