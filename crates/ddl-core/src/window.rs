@@ -360,10 +360,11 @@ impl Window {
     }
 
     /// The window in reversed time: every pedestrian walks its track from the end to the start, at the same frames.
-    /// Remembered tracks and bystanders are dropped, because they would lie in the future.
+    /// Remembered tracks, bystanders and qualities are dropped, because they are of the other end.
     #[must_use]
     pub fn reversed(&self) -> Window {
-        let mut reversed = self.clone().with_remembered(|_| Vec::new()).with_bystanders(None);
+        let alone = self.clone().with_remembered(|_| Vec::new()).with_bystanders(None);
+        let mut reversed = alone.with_qualities(Vec::new());
         for track in reversed.positions.chunks_exact_mut(self.steps()) {
             track.reverse();
         }

@@ -53,8 +53,8 @@ impl Analogues {
         let motion = Motion::new(track, self.time_step)?;
         let analogues = self.index.nearest(&motion.components, experts);
         let points = self.weighted_deviations(&analogues);
-        let choice = choose(&points, clusters, STEPS);
-        let goals: Vec<_> = choice.goals.iter().map(|&d| motion.place(d)).collect();
+        let (goals, weights) = choose(&points, clusters, STEPS);
+        let goals: Vec<_> = goals.iter().map(|&d| motion.place(d)).collect();
         if !goals.as_flattened().iter().all(|value| value.is_finite()) {
             let index = QuerySpan::Observed.velocities() - 1;
             return Err(TrackError::VelocityOverflow { index }.into());
@@ -65,7 +65,7 @@ impl Analogues {
             mirrored: alike.mirrored,
         };
         let experts = analogues.iter().take(REPORTED_EXPERTS).map(expert).collect();
-        Ok(GoalSet::new(goals, choice.weights, experts))
+        Ok(GoalSet::new(goals, weights, experts))
     }
 
     /// Deviations of the analogues, weighted by similarity; the weights sum to 1.

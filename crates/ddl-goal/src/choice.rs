@@ -3,16 +3,11 @@
 use crate::lloyd::Lloyd;
 use crate::points::Points;
 
-/// Goals, each with the total weight of its nearest points.
-pub(crate) struct Choice {
-    pub(crate) goals: Vec<[f64; 2]>,
-    pub(crate) weights: Vec<f64>,
-}
-
 /// Chooses `clusters` goals such that the weighted mean distance of a point to its nearest goal is small. Cells are
 /// divided in two, the costliest first; then `steps` of Lloyd's iteration follow. The result is deterministic. If there
-/// are fewer distinct points than goals, goals are repeated with weight 0.
-pub(crate) fn choose(points: &Points, clusters: usize, steps: usize) -> Choice {
+/// are fewer distinct points than goals, goals are repeated with weight 0. Returned are the goals, and for each the
+/// total weight of its nearest points.
+pub(crate) fn choose(points: &Points, clusters: usize, steps: usize) -> (Vec<[f64; 2]>, Vec<f64>) {
     let centres = first_centres(points, clusters).into_iter().cycle();
     let mut run = Lloyd::from_centres(points, centres.take(clusters).collect());
     run.iterate(points, steps, 0.0);
@@ -20,10 +15,7 @@ pub(crate) fn choose(points: &Points, clusters: usize, steps: usize) -> Choice {
     for (&label, weight) in run.labels.iter().zip(&points.weight) {
         weights[label as usize] += weight;
     }
-    Choice {
-        goals: run.centres,
-        weights,
-    }
+    (run.centres, weights)
 }
 
 struct Cell {

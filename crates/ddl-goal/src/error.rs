@@ -8,16 +8,12 @@ use thiserror::Error;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum ParamsError {
-    #[error("experts is 0: at least one similar pedestrian must be retrieved (the paper uses 100)")]
-    NoExperts,
-    #[error("clusters is 0: at least one goal must be estimated (the paper uses 20)")]
-    NoClusters,
-    #[error("restarts is 0: k-means must be run at least once (the published code runs it 10 times)")]
-    NoRestarts,
-    #[error("clusters is {clusters}, of at most {limit}: one goal is estimated for each")]
-    ManyClusters { clusters: usize, limit: usize },
-    #[error("restarts is {restarts}, of at most {limit}: each is a run of k-means for every pedestrian")]
-    ManyRestarts { restarts: usize, limit: usize },
+    #[error("{field} is {value}: it must be {rule}")]
+    Count {
+        field: &'static str,
+        value: usize,
+        rule: &'static str,
+    },
     #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
     InvalidGamma { gamma: f64 },
     #[error("query is published-future and frame is heading: the query that reads the future requires frame world")]

@@ -98,9 +98,9 @@ impl GoalSet {
                 points.push(end, share);
             }
         }
-        let choice = choose(&points, clusters, STEPS);
-        let goals: Vec<_> = choice.goals.iter().map(|&end| frame.to_world(end)).collect();
-        Ok(Self::new(goals, choice.weights, Vec::new()))
+        let (goals, weights) = choose(&points, clusters, STEPS);
+        let goals: Vec<_> = goals.iter().map(|&end| frame.to_world(end)).collect();
+        Ok(Self::new(goals, weights, Vec::new()))
     }
 
     /// The goals (m, in the coordinates of the observed track), as many as clusters requested. Goals are repeated if
@@ -131,8 +131,9 @@ impl GoalSet {
         self
     }
 
-    /// The same set, widened about its [`median`](Self::median) so that the variance of the goals on each axis grows by
-    /// that of this standard deviation (m, not negative): for a pedestrian whose motion is not well known.
+    /// The same set, widened about its [`median`](Self::median) by one factor, so that the mean of the variances on both
+    /// axes grows by that of this standard deviation (m, not negative): for a pedestrian whose motion is not well
+    /// known. Goals that coincide stay.
     #[must_use]
     pub fn widened_by(mut self, deviation: f64) -> Self {
         let median = self.median();

@@ -7,8 +7,6 @@ use crate::span::QuerySpan;
 
 /// Largest number of goals for a pedestrian; a forecast has 20. A file that asks for more would take all memory.
 pub(crate) const MOST_CLUSTERS: usize = 1000;
-/// Largest number of runs of k-means for a pedestrian.
-const MOST_RESTARTS: usize = 1000;
 
 /// Coordinates in which pedestrians are compared and endpoints are transferred.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -92,28 +90,26 @@ impl GoalEstimatorParams {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// If a count is 0, gamma is negative or not finite, or the query reads the future in the frame `Heading`.
+    /// If a count is out of range, gamma is negative or not finite, or the query reads the future in the frame `Heading`.
     pub fn check(&self) -> Result<(), ParamsError> {
-        if self.experts == 0 {
-            return Err(ParamsError::NoExperts);
-        }
-        if self.clusters == 0 {
-            return Err(ParamsError::NoClusters);
-        }
-        if self.clusters > MOST_CLUSTERS {
-            return Err(ParamsError::ManyClusters {
-                clusters: self.clusters,
-                limit: MOST_CLUSTERS,
-            });
-        }
-        if self.restarts == 0 {
-            return Err(ParamsError::NoRestarts);
-        }
-        if self.restarts > MOST_RESTARTS {
-            return Err(ParamsError::ManyRestarts {
-                restarts: self.restarts,
-                limit: MOST_RESTARTS,
-            });
+        for (field, value, most, rule) in [
+            ("experts", self.experts, usize::MAX, "at least 1 (the paper uses 100)"),
+            (
+                "clusters",
+                self.clusters,
+                MOST_CLUSTERS,
+                "1 to 1000 (the paper uses 20)",
+            ),
+            (
+                "restarts",
+                self.restarts,
+                1000,
+                "1 to 1000 (the published code uses 10)",
+            ),
+        ] {
+            if !(1..=most).contains(&value) {
+                return Err(ParamsError::Count { field, value, rule });
+            }
         }
         if !(self.gamma.is_finite() && self.gamma >= 0.0) {
             return Err(ParamsError::InvalidGamma { gamma: self.gamma });
@@ -127,7 +123,7 @@ impl GoalEstimatorParams {
 
 #[cfg(test)]
 mod tests {
-    use super::{GoalEstimatorParams, MOST_CLUSTERS, RetrievalFrame};
+    use super::{GoalEstimatorParams, RetrievalFrame};
 
     type Fault = (fn(&mut GoalEstimatorParams), &'static str);
 
@@ -136,9 +132,9 @@ mod tests {
         let cases: [Fault; 9] = [
             (|p| p.experts = 0, "experts is 0"),
             (|p| p.clusters = 0, "clusters is 0"),
-            (|p| p.clusters = MOST_CLUSTERS + 1, "clusters is 1001, of at most 1000"),
+            (|p| p.clusters = 1001, "clusters is 1001: it must be 1 to 1000"),
             (|p| p.restarts = 0, "restarts is 0"),
-            (|p| p.restarts = usize::MAX, "of at most 1000: each is a run"),
+            (|p| p.restarts = usize::MAX, "it must be 1 to 1000"),
             (|p| p.gamma = -1.0, "gamma is -1"),
             (|p| p.gamma = f64::INFINITY, "gamma is inf"),
             (|p| p.gamma = f64::NAN, "gamma is NaN"),

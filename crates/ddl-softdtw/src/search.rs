@@ -43,22 +43,16 @@ impl<const D: usize> SearchIndex<D> {
     /// finite, or whose D(y, y) exceeds the range of `f64`.
     pub fn build<S>(dtw: &SoftDtw, candidates: &[S]) -> Result<Self, SearchError>
     where
-        S: AsRef<[[f64; D]]> + Sync,
+        S: AsRef<[[f64; D]]>,
     {
         if candidates.is_empty() {
             return Err(SearchError::NoCandidates);
         }
-        let checked: Vec<_> = candidates
-            .iter()
-            .map(|candidate| check(candidate.as_ref(), 'y'))
-            .collect();
-        for (index, checked) in checked.into_iter().enumerate() {
-            checked.map_err(|source| SearchError::Candidate { index, source })?;
-        }
-        let mut steps = Vec::new();
-        let mut offsets = vec![0];
-        for candidate in candidates {
-            steps.extend_from_slice(candidate.as_ref());
+        let (mut steps, mut offsets) = (Vec::new(), vec![0]);
+        for (index, candidate) in candidates.iter().enumerate() {
+            let candidate = candidate.as_ref();
+            check(candidate, 'y').map_err(|source| SearchError::Candidate { index, source })?;
+            steps.extend_from_slice(candidate);
             offsets.push(steps.len());
         }
         let mut index = Self {

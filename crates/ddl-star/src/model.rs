@@ -28,7 +28,6 @@ pub(crate) use network::Layers;
 pub use network::TorchNetwork;
 pub(crate) use numbers::{arrays, tensor};
 pub use parameters::Parameters;
-pub(crate) use rollout::ForecastSteps;
 pub(crate) use tensor_backend::{Engine, KernelPass};
 
 #[cfg(test)]

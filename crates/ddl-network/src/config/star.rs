@@ -54,11 +54,8 @@ fn is_star(backbone: &BackboneKind) -> bool {
     *backbone == BackboneKind::Star
 }
 
-/// The kernels have room for this many heads.
-const MOST_HEADS: i64 = 256;
-/// The upper limits prevent a damaged file from requesting all memory of the machine.
+/// This limit prevents a damaged file from requesting all memory of the machine.
 const MOST_LAYER_NUMBERS: i64 = 1 << 24;
-const MOST_LAYERS: usize = 64;
 
 impl StarConfig {
     /// The name of the network in reports: its variant, and its backbone if that is not STAR.
@@ -147,29 +144,24 @@ impl StarConfig {
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
     pub fn check(&self) -> Result<(), NetworkError> {
-        let counts = [
-            ("model_width", self.model_width),
-            ("heads", self.heads),
-            ("feed_forward_width", self.feed_forward_width),
-            ("spatial_layers", self.spatial_layers as i64),
-            ("noise_width", self.noise_width),
-        ];
-        for (field, value) in counts {
-            let holds = (1..=65_536).contains(&value);
-            require(holds, field, &value, "1 to 65536")?;
+        // The kernels have room for 256 heads.
+        for (field, value, most, rule) in [
+            ("model_width", self.model_width, 65_536, "1 to 65536"),
+            ("heads", self.heads, 256, "1 to 256"),
+            ("feed_forward_width", self.feed_forward_width, 65_536, "1 to 65536"),
+            ("spatial_layers", self.spatial_layers as i64, 64, "1 to 64"),
+            ("noise_width", self.noise_width, 65_536, "1 to 65536"),
+        ] {
+            require((1..=most).contains(&value), field, &value, rule)?;
         }
-        let (heads, layers) = (self.heads, self.spatial_layers);
-        require(heads <= MOST_HEADS, "heads", &heads, "at most 256")?;
         require(
             self.layer_numbers() <= MOST_LAYER_NUMBERS,
             "feed_forward_width",
             &self.feed_forward_width,
             "a layer may have at most 2^24 weights",
         )?;
-        let few = layers <= MOST_LAYERS;
-        require(few, "spatial_layers", &layers, "at most 64")?;
-        let fits = self.model_width == heads * HEAD_WIDTH as i64;
-        require(fits, "heads", &heads, "a quarter of model_width")?;
+        let fits = self.model_width == self.heads * HEAD_WIDTH as i64;
+        require(fits, "heads", &self.heads, "a quarter of model_width")?;
         require(
             self.frame == NetworkFrame::World || self.variant.goal_shift(),
             "frame",

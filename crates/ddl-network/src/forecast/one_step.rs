@@ -1,8 +1,8 @@
 //! The step of one pedestrian, computed by `ddl-dynamics`.
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime,
-    rollout_into,
+    Attractor, CholeskyMetric, DynamicsError, Euler, Integrator as _, MotionBounds, NaturalGradientFlow, StableEuler,
+    State, StepTime,
 };
 use nalgebra::Vector2;
 
@@ -22,20 +22,15 @@ pub(super) fn next(
     let step = || -> Result<[f32; 2], DynamicsError> {
         let attractor = Attractor::new(Vector2::from(goal))?;
         let metric = CholeskyMetric::planar(a, b, c, sigma)?;
-        let start = Vector2::from(place);
-        let mut path = [start; 2];
-        match bounds {
-            None => {
-                let flow = NaturalGradientFlow::new(attractor, metric);
-                rollout_into(&flow, &Euler, start, time.dt, &mut path)?;
-            }
+        let state = State::new(Vector2::from(place), 0, 0.0);
+        let next = match bounds {
+            None => Euler.step(&NaturalGradientFlow::new(attractor, metric), &state, time.dt),
             Some(bounds) => {
-                let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
-                let flow = NaturalGradientFlow::new(attractor, metric);
-                rollout_into(&flow, &StableEuler, start, time.dt, &mut path)?;
+                let metric = bounds.shape(&metric, &(attractor.goal() - state.position), time);
+                StableEuler.step(&NaturalGradientFlow::new(attractor, metric), &state, time.dt)
             }
-        }
-        Ok(path[1].into())
+        };
+        Ok(next?.into())
     };
     step().unwrap_or([f32::NAN; 2])
 }

@@ -5,6 +5,7 @@
 //! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: about 1 m up to walking speed, and
 //! about v / (2 m/s) metres far above it.
 
+use ddl_core::mean_speed;
 use ddl_core::motion::FAST_WALK;
 use ddl_data::Position;
 
@@ -69,12 +70,7 @@ impl OwnFrame {
 /// assert!((ddl_network::length_unit(&track(6.0), 0.4) - 3.0).abs() < 0.02); // running
 /// ```
 pub fn length_unit(observed: &[Position], time_step: f64) -> f64 {
-    let steps = observed.len().saturating_sub(1).max(1) as f64;
-    let way: f64 = observed
-        .windows(2)
-        .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
-        .sum();
-    let relative = way / (steps * time_step * FAST_WALK);
+    let relative = mean_speed(observed, time_step) / FAST_WALK;
     // The division by the larger of the two prevents an overflow of the fourth power.
     let larger = relative.max(1.0);
     larger * (larger.powi(-4) + (relative / larger).powi(4)).powf(0.25)
@@ -118,8 +114,7 @@ mod tests {
         ) {
             let track: Vec<Position> = track.iter().map(|p| p.map(|x| x * 10f64.powf(scale))).collect();
             let unit = length_unit(&track, 0.4);
-            let lengths = track.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]));
-            let speed = lengths.sum::<f64>() / 7.0 / 0.4;
+            let speed = mean_speed(&track, 0.4);
             prop_assert!(unit >= 1.0 && speed / unit <= FAST_WALK * (1.0 + 1e-12));
         }
     }

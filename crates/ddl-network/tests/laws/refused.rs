@@ -80,7 +80,7 @@ fn configurations_out_of_range_are_refused() {
             (|c| c.heads = 4, "a quarter of model_width"),
             (|c| (c.model_width, c.heads) = (512, 512), "heads = 512"),
             (|c| c.model_width = 65_536, "at most 2^24 weights"),
-            (|c| c.spatial_layers = 65, "at most 64"),
+            (|c| c.spatial_layers = 65, "1 to 64"),
             (|c| c.spatial_dropout = 1.0, "in [0, 1)"),
             (|c| c.sigma = 0.0, "sigma"),
             (

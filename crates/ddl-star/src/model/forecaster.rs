@@ -6,9 +6,9 @@ use crate::model::batch::WindowBatch;
 use crate::model::emission::NoiseInput;
 use crate::model::network::TorchNetwork;
 use crate::model::numbers::{arrays, tensor};
-use crate::model::rollout::{ForecastSteps, Rollout};
+use crate::model::rollout::Rollout;
 use crate::model::tensor_backend::Engine;
-use ddl_data::{HORIZON, OBSERVED, Window};
+use ddl_data::{OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
 use ddl_network::{BatchRollout, CrowdOrder, ForecastBatch, ForecastWindows, NetworkError, StarConfig};
@@ -49,11 +49,7 @@ impl TorchNetwork {
         };
         let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
         let pass = Engine::Torch(&torch);
-        let steps = ForecastSteps {
-            horizon: HORIZON,
-            rule: batch.rule,
-        };
-        let Rollout { positions, factors } = self.layers.roll_out(&scenes, &goals, &noise, steps, pass);
+        let Rollout { positions, factors } = self.layers.roll_out(&scenes, &goals, &noise, batch.rule, pass);
         Ok(BatchRollout {
             hypotheses: positions.size()[1] as usize,
             positions: arrays(&positions)?,

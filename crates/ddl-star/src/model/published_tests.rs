@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::device::ComputeDevice;
-use crate::model::{Engine, ForecastSteps, NoiseInput, TorchBackend, TorchNetwork, WindowBatch};
+use crate::model::{Engine, NoiseInput, TorchBackend, TorchNetwork, WindowBatch};
 use crate::training::mean_squared_distance;
 use ddl_data::{PedestrianId, Window};
 use ddl_network::backend::Mode;
@@ -69,12 +69,7 @@ impl Reference {
                 continue; // the published template layer never runs
             }
             let index = entry["index"].as_f64().unwrap();
-            let shape: Vec<i64> = entry["shape"]
-                .as_array()
-                .unwrap()
-                .iter()
-                .map(|n| n.as_i64().unwrap())
-                .collect();
+            let shape: Vec<i64> = serde_json::from_value(entry["shape"].clone()).unwrap();
             let scale = if shape.len() == 2 {
                 0.3 / (shape[1] as f64).sqrt()
             } else {
@@ -151,13 +146,9 @@ fn agrees(kind: Kind, tolerance: f64) {
 
     let goal = reference.tensor("/estimated_goal", &[1, pedestrians, 2], kind);
     let _guard = tch::no_grad_guard();
-    let steps = ForecastSteps {
-        horizon: 12,
-        rule: StepRule::Euler,
-    };
     let rollout = network
         .layers
-        .roll_out(&batch, &goal, &noise, steps, Engine::Torch(&torch));
+        .roll_out(&batch, &goal, &noise, StepRule::Euler, Engine::Torch(&torch));
     let rolled = rollout.positions.squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));

@@ -8,7 +8,7 @@ use crate::model::guidance::Guidance;
 use crate::model::network::Layers;
 use crate::model::own_motion;
 use crate::model::tensor_backend::{Engine, TensorBackend};
-use ddl_data::OBSERVED;
+use ddl_data::{HORIZON, OBSERVED};
 use ddl_network::backbone::Backbone;
 use ddl_network::backend::Memory;
 use ddl_network::{NetworkFrame, StepRule};
@@ -18,18 +18,11 @@ use tch::{Kind, Tensor};
 /// The forecast from observed frames: positions, and the factors that shaped them.
 #[derive(Debug)]
 pub(crate) struct Rollout {
-    /// `[horizon, H, P, 2]`, metres.
+    /// `[12, H, P, 2]`, metres.
     pub(crate) positions: Tensor,
-    /// `[horizon, H, P, 3]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), of the step to each position; `None`
+    /// `[12, H, P, 3]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), of the step to each position; `None`
     /// for the variants without dynamics.
     pub(crate) factors: Option<Tensor>,
-}
-
-/// The steps of a forecast.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct ForecastSteps {
-    pub(crate) horizon: usize,
-    pub(crate) rule: StepRule,
 }
 
 /// A backend, and the backbone in its operations.
@@ -97,19 +90,19 @@ impl Layers {
     ///
     /// # Shapes
     /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions
-    /// `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
+    /// `[12, H, P, 2]` and factors `[12, H, P, 3]`.
     pub(crate) fn roll_out(
         &self,
         batch: &WindowBatch,
         goals: &Tensor,
         noise: &NoiseInput,
-        steps: ForecastSteps,
+        rule: StepRule,
         pass: Engine<'_>,
     ) -> Rollout {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Engine::Torch(backend) => self.roll_out_by(batch, goals, noise, steps, (backend, &*self.on_tensors)),
-            Engine::Kernels(pass) => self.roll_out_by(batch, goals, noise, steps, (&pass.backend, &*self.on_rows)),
+            Engine::Torch(backend) => self.roll_out_by(batch, goals, noise, rule, (backend, &*self.on_tensors)),
+            Engine::Kernels(pass) => self.roll_out_by(batch, goals, noise, rule, (&pass.backend, &*self.on_rows)),
         }
     }
 
@@ -118,7 +111,7 @@ impl Layers {
         batch: &WindowBatch,
         goals: &Tensor,
         (noise, noise_weight): (&NoiseInput, &Tensor),
-        ForecastSteps { horizon, rule }: ForecastSteps,
+        rule: StepRule,
         (backend, backbone): BackbonePass<'_, B>,
     ) -> Rollout {
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
@@ -138,16 +131,16 @@ impl Layers {
         let mut sum = observed
             .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
             .expand([hypotheses, -1, -1], false);
-        let mut path = Vec::with_capacity(horizon);
-        let mut factors = Vec::with_capacity(horizon);
-        for t in OBSERVED..OBSERVED + horizon {
+        let mut path = Vec::with_capacity(HORIZON);
+        let mut factors = Vec::with_capacity(HORIZON);
+        for t in OBSERVED..OBSERVED + HORIZON {
             let emitted = guidance.to_world(&emission.of(backend, from_ref(&features)));
             let before = position.detach();
-            let steps = (t - OBSERVED, OBSERVED + horizon - t);
+            let steps = (t - OBSERVED, OBSERVED + HORIZON - t);
             position = guidance.next_positions(&position, goals, &emitted, steps);
             path.push(position.shallow_clone());
             factors.push(emitted);
-            if t + 1 < OBSERVED + horizon {
+            if t + 1 < OBSERVED + HORIZON {
                 let position = position.detach();
                 sum = &sum + &position;
                 let centred = &position - batch.rows.means(&sum) / (t + 1) as f64;

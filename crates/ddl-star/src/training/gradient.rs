@@ -1,11 +1,11 @@
 //! The loss of a batch, and its gradient with respect to all learned numbers as one vector.
 
 use crate::StarError;
-use crate::model::{Engine, ForecastSteps, KernelPass, Layers, NoiseInput, TorchBackend, TorchNetwork};
+use crate::model::{Engine, KernelPass, Layers, NoiseInput, TorchBackend, TorchNetwork};
 use crate::training::draws::StepDraw;
 use crate::training::loss::{mean_distance, mean_squared_distance};
 use crate::training::prepared::TrainingBatch;
-use ddl_data::{HORIZON, OBSERVED, WINDOW};
+use ddl_data::{OBSERVED, WINDOW};
 use ddl_network::backend::{Kernels, Mode};
 use ddl_network::seed::{Stage, stream};
 use ddl_network::{Objective, StepRule};
@@ -97,11 +97,7 @@ fn loss(
         }
         Objective::Walk => {
             let goals = goals.unsqueeze(0);
-            let steps = ForecastSteps {
-                horizon: HORIZON,
-                rule: StepRule::Bounded,
-            };
-            let walk = layers.roll_out(scenes, &goals, &NoiseInput::Expected, steps, pass);
+            let walk = layers.roll_out(scenes, &goals, &NoiseInput::Expected, StepRule::Bounded, pass);
             Ok(mean_distance(&walk.positions.squeeze_dim(1), &after(OBSERVED)?))
         }
     }

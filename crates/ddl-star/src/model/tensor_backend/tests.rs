@@ -3,7 +3,7 @@
 
 use super::*;
 use crate::device::ComputeDevice;
-use crate::model::{ForecastSteps, NoiseInput, TorchNetwork};
+use crate::model::{NoiseInput, TorchNetwork};
 use ddl_data::{Dataset, WINDOW, Window, WindowRule};
 use ddl_network::{
     BackboneKind, DeviceChoice, ForecastWindows, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
@@ -103,11 +103,7 @@ fn walk(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor 
     let batch = batch(windows, network.kind);
     let goals = batch.positions.narrow(0, WINDOW as i64 - 1, 1) + 0.3;
     let noise = NoiseInput::Expected;
-    let steps = ForecastSteps {
-        horizon: 12,
-        rule: StepRule::Bounded,
-    };
-    let walk = network.layers.roll_out(&batch, &goals, &noise, steps, pass);
+    let walk = network.layers.roll_out(&batch, &goals, &noise, StepRule::Bounded, pass);
     let truth = batch.positions.narrow(0, 8, 12);
     crate::training::mean_distance(&walk.positions.squeeze_dim(1), &truth)
 }
