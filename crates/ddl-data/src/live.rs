@@ -243,7 +243,13 @@ impl LiveTracks {
         &self.noise
     }
 
-    /// The pedestrians of the last frame whose row was left out, or began the track anew.
+    /// Whether the last row of a pedestrian was left out.
+    pub fn has_left_out(&self, id: PedestrianId) -> bool {
+        let pedestrian = self.pedestrians.get(&id);
+        pedestrian.is_some_and(|one| one.track.last_time() < one.last_row as f64)
+    }
+
+    /// The rows that the last frame showed to be wrong, and the tracks that it began anew.
     pub fn misfits(&self) -> &[Misfit] {
         &self.misfits
     }
@@ -286,13 +292,13 @@ impl LiveTracks {
                     let swap = exchanged.iter().find(|(other, _)| *other == id);
                     let misfit = if let Some((_, distance)) = swap {
                         pedestrian.track = ObservedTrack::beginning(time, position);
-                        Some((*distance, MisfitTreatment::BegunAnew))
+                        Some((row.time, *distance, MisfitTreatment::BegunAnew))
                     } else {
                         pedestrian.track.push(row, tick_time, &known, &mut self.noise)
                     };
                     pedestrian.track.forget_before(time, self.clock.frame_step() as f64);
-                    self.misfits.extend(misfit.map(|(distance, treatment)| Misfit {
-                        tick,
+                    self.misfits.extend(misfit.map(|(time, distance, treatment)| Misfit {
+                        tick: time as i64,
                         pedestrian: id,
                         distance,
                         treatment,

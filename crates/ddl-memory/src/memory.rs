@@ -19,10 +19,10 @@ const OLDEST: usize = 8;
 /// The tracks that one camera has observed.
 ///
 /// A *segment* is 20 positions of one pedestrian, one step of 0.4 s apart: those at whole steps after its first row, or
-/// after the first row after a gap. If rows lie between these steps, the positions lie between two rows.
+/// after the first row after a gap. Where no row is at a step, the position lies between two rows.
 ///
-/// - A missing step ends a run of segments. A track ends after more than 8 steps (3.2 s) without a position; if the
-///   same id returns later, a new track begins.
+/// - A run of segments ends where a pedestrian has no row for more than 1.2 s. A track ends after more than 8 steps
+///   (3.2 s) without a row; if the same id returns later, a new track begins.
 /// - Two segments are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
 /// - A track is kept in runs of up to 8 segments. A run is removed if its first and its last segment are both similar
 ///   to segments of an earlier run of the same track, except the run right before it. Of the remaining runs, the
@@ -146,6 +146,19 @@ impl SceneMemory {
         frame: i64,
         positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<(), MemoryError> {
+        self.observe_begun(frame, positions, &[])
+    }
+
+    /// As [`observe`](Self::observe), where the tracks of `begun` begin anew: their ids were those of others before.
+    ///
+    /// # Errors
+    /// As [`observe`](Self::observe).
+    pub fn observe_begun(
+        &mut self,
+        frame: i64,
+        positions: impl IntoIterator<Item = (PedestrianId, Position)>,
+        begun: &[PedestrianId],
+    ) -> Result<(), MemoryError> {
         let positions = checked_frame(frame, self.last_frame, positions)?;
         let watched = self.last_frame.map_or(0, |last| frame.abs_diff(last));
         self.seen.watched = self.seen.watched.saturating_add(watched);
@@ -157,7 +170,12 @@ impl SceneMemory {
             self.seen.add(position);
             match self.running.entry(id) {
                 Entry::Occupied(mut running) => {
-                    let (new, gone) = running.get_mut().see(frame, position, step);
+                    let running = running.get_mut();
+                    let (new, gone) = if begun.contains(&id) {
+                        running.begin_anew(frame, position)
+                    } else {
+                        running.see(frame, position, step)
+                    };
                     self.segments = self.segments + new - gone;
                 }
                 Entry::Vacant(place) => {

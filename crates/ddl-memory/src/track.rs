@@ -129,7 +129,6 @@ impl RunningTrack {
         let before = before.filter(|(before, _)| frame - before <= LONGEST_JOINED * step);
         while let Some((from, start)) = before
             && frame > self.last + step
-            && (from != self.last || (frame - self.last) % step != 0)
         {
             let due = self.last + step;
             let share = (due - from) as f64 / (frame - from) as f64;
@@ -142,6 +141,12 @@ impl RunningTrack {
         }
         let (added, removed) = self.add(frame, position, step);
         (new + added, gone + removed)
+    }
+
+    /// Adds a row that no path joins to those before.
+    pub(crate) fn begin_anew(&mut self, frame: i64, position: Position) -> (usize, usize) {
+        (self.last, self.between) = (frame, None);
+        (0, self.track.add(Piece::begin(position)))
     }
 
     fn add(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {

@@ -6,7 +6,7 @@ use ddl_core::PedestrianId;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Misfit {
-    /// Tick of the row, or of the next one, which showed that it is wrong.
+    /// Tick of the row; of a track that begins anew, of the row that showed it.
     pub tick: i64,
     /// Its pedestrian.
     pub pedestrian: PedestrianId,

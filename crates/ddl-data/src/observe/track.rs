@@ -124,15 +124,15 @@ impl ObservedTrack {
 
     /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. Whether it fits is decided with the
     /// noise `known` before, so that it does not depend on the order of pedestrians; what it shows is added to
-    /// `recording`. Returns how far off (m) a row is that is not where the pedestrian was expected, this one or the one
-    /// before, and how it is treated.
+    /// `recording`. Returns the time of a row that is not where the pedestrian was expected, this one or the one before,
+    /// how far off (m) it is, and how it is treated.
     pub(crate) fn push(
         &mut self,
         row: Row,
         tick_time: f64,
         known: &RecordingNoise,
         recording: &mut RecordingNoise,
-    ) -> Option<(f64, MisfitTreatment)> {
+    ) -> Option<(f64, f64, MisfitTreatment)> {
         if (row.time - self.last_time()) * tick_time > LONGEST_GAP {
             *self = Self::beginning(row.time, row.position);
             return None;
@@ -154,14 +154,15 @@ impl ObservedTrack {
                 noise: turn.before,
                 ..self.clone()
             };
-            without.rows.pop_back();
+            let wrong = without.rows.pop_back()?;
             if without.fit(row, tick_time, known).is_expected {
                 without.accept(row, tick_time, known, recording);
                 *self = without;
-                return Some((turn.distance, MisfitTreatment::LeftOut));
+                return Some((wrong.time, turn.distance, MisfitTreatment::LeftOut));
             }
         }
-        Some(self.doubt(row, fit.distance, tick_time, known, recording))
+        let (distance, treatment) = self.doubt(row, fit.distance, tick_time, known, recording);
+        Some((row.time, distance, treatment))
     }
 
     /// Where the pedestrian is expected at a time; `None` if too few rows show its speed, or the last is too old.

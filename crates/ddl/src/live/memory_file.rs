@@ -66,7 +66,7 @@ impl MemoryFile {
         self.written = Instant::now();
         let decided = place.refused().is_none() && place.under_test().is_none();
         // Without a frame, the file would only fix the frame rate of the next session.
-        if decided && place.memory().last_frame().is_some() {
+        if decided && place.memory().summary().frames > 0 {
             place.memory().write(&self.file)?;
         }
         Ok(())

@@ -104,7 +104,7 @@ impl PlaceMemory {
         self.memory.recalling(window, self.count)
     }
 
-    /// Observes a frame, and tests the memory on its window, if there is one.
+    /// Observes a frame, in which the tracks of `begun` begin anew, and tests the memory on its window, if there is one.
     ///
     /// # Errors
     /// As [`SceneMemory::observe`]. The state is then unchanged.
@@ -112,9 +112,10 @@ impl PlaceMemory {
         &mut self,
         frame: i64,
         pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
+        begun: &[PedestrianId],
         window: Option<&Window>,
     ) -> Result<(), DdlError> {
-        self.memory.observe(frame, pedestrians)?;
+        self.memory.observe_begun(frame, pedestrians, begun)?;
         if let (Some(trial), Some(window)) = (&mut self.trial, window) {
             trial.look_at(window);
             // With this many similar pedestrians, later ones cannot cause a refusal.
@@ -182,7 +183,9 @@ mod tests {
             let mut tracks = LiveTracks::with_frame_step(corridor.frame_step()).unwrap();
             for &frame in &corridor.frames()[..steps] {
                 tracks = tracks.after(frame, seen(frame, by)).unwrap();
-                place.observe(frame, seen(frame, by), tracks.window().as_ref()).unwrap();
+                place
+                    .observe(frame, seen(frame, by), &[], tracks.window().as_ref())
+                    .unwrap();
             }
             place
         };

@@ -62,14 +62,13 @@ impl Watch {
             }
         };
         if let Some(place) = &mut self.place {
-            // A row that is left out is no path of a pedestrian.
-            let is_left_out = |id: PedestrianId| {
-                let mut misfits = tracks.misfits().iter();
-                misfits.any(|misfit| misfit.pedestrian == id && misfit.treatment == MisfitTreatment::LeftOut)
-            };
-            let rows = pedestrians.into_iter().filter(|(id, _)| !is_left_out(*id));
+            // A row that is left out is no path of a pedestrian, and nobody walks from one track to another.
+            let rows = pedestrians.into_iter().filter(|(id, _)| !tracks.has_left_out(*id));
+            let begun = tracks.misfits().iter();
+            let begun = begun.filter(|misfit| misfit.treatment == MisfitTreatment::BegunAnew);
+            let begun: Vec<PedestrianId> = begun.map(|misfit| misfit.pedestrian).collect();
             let window = made.as_ref().map(|(window, _)| window);
-            place.observe(tracks.last_frame().unwrap_or(frame), rows, window)?;
+            place.observe(tracks.last_frame().unwrap_or(frame), rows, &begun, window)?;
         }
         self.tracks = tracks;
         Ok(made)
