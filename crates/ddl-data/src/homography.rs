@@ -4,7 +4,6 @@ use ddl_core::{PedestrianName, PedestrianNames, Position};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::error::RecordingError;
 use crate::observation::{COORDINATE_LIMIT, Observation};
 use crate::recording::Recording;
 
@@ -72,11 +71,11 @@ impl Homography {
     /// # Errors
     /// [`HomographyError::Horizon`] where a pixel has no place on the ground.
     pub fn to_ground(&self, recording: &Recording) -> Result<Recording, HomographyError> {
-        let mut observations = recording.observations().to_vec();
-        for seen in &mut observations {
+        let mut mapped = recording.clone();
+        for seen in &mut mapped.observations {
             seen.position = self.place(seen, recording.names())?;
         }
-        Ok(recording.with_observations(recording.frame_step(), observations)?)
+        Ok(mapped)
     }
 }
 
@@ -141,6 +140,4 @@ pub enum HomographyError {
         frame: i64,
         pixel: [f64; 2],
     },
-    #[error(transparent)]
-    Recording(#[from] RecordingError),
 }

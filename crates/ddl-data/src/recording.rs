@@ -23,7 +23,7 @@ const FASTEST: f64 = 1e-3;
 pub struct Recording {
     name: Arc<str>,
     frame_step: i64,
-    observations: Vec<Observation>,
+    pub(crate) observations: Vec<Observation>,
     frames: Vec<i64>,
     /// `starts[k]..starts[k + 1]` are the observations of `frames[k]`.
     starts: Vec<usize>,
@@ -208,21 +208,6 @@ impl Recording {
     #[must_use]
     pub fn with_notes(self, notes: Vec<String>) -> Self {
         Self { notes, ..self }
-    }
-
-    pub(crate) fn with_observations(
-        &self,
-        frame_step: i64,
-        observations: Vec<Observation>,
-    ) -> Result<Self, RecordingError> {
-        Ok(Self {
-            rate: self.rate,
-            time_unit: self.time_unit,
-            restarts: self.restarts,
-            notes: self.notes.clone(),
-            names: self.names.clone(),
-            ..Self::new(self.shared_name(), frame_step, observations)?
-        })
     }
 
     pub(crate) fn with_names(self, names: PedestrianNames) -> Self {

@@ -76,7 +76,7 @@ const LENGTH_UNITS: [(&str, LengthUnit); 7] = [
     ("mm millimetres millimeters", LengthUnit::PerMetre(1000.0)),
     ("km kilometres kilometers", LengthUnit::PerMetre(0.001)),
     ("ft feet foot", LengthUnit::PerMetre(3.280_839_895_013_123)),
-    ("in inch inches", LengthUnit::PerMetre(39.370_078_740_157_48)),
+    ("inch inches", LengthUnit::PerMetre(39.370_078_740_157_48)),
     ("px pix pixel pixels", LengthUnit::Pixels),
 ];
 
@@ -96,6 +96,13 @@ pub(super) struct Named {
 }
 
 impl LengthUnit {
+    /// The name of the unit of which so many make a metre; `None` for metres.
+    pub(super) fn words(per_metre: f64) -> Option<&'static str> {
+        let others = &LENGTH_UNITS[1..];
+        let (names, _) = others.iter().find(|(_, unit)| *unit == Self::PerMetre(per_metre))?;
+        names.split(' ').nth(1)
+    }
+
     /// Units per metre; `None` for pixels.
     pub(super) fn per_metre(self) -> Option<f64> {
         match self {

@@ -338,7 +338,8 @@ impl Roles<'_> {
 
     fn mixed_units(&self) -> Option<Fault> {
         let [x, y] = [self.of(Role::X)?, self.of(Role::Y)?];
-        (x.length.is_some() && y.length.is_some() && x.length != y.length).then(|| {
+        let [of_x, of_y] = [x, y].map(|named| named.length.unwrap_or(LengthUnit::PerMetre(1.0)));
+        (of_x != of_y).then(|| {
             let [of_x, of_y] = [x, y].map(|named| quoted(self.names[named.index]));
             (
                 Some(y.index),

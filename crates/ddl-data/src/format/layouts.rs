@@ -155,7 +155,8 @@ pub(super) static LAYOUTS: [Layout; 11] = [
         names: "frame pedestrian class x y z length width height heading",
         place: Place::Point([3, 4]),
         class: Some((2, "3")),
-        note: Some("read as trajectories of ApolloScape: rows of class 3, pedestrians"),
+        rate: Some(2.0),
+        note: Some("read as trajectories of ApolloScape, 2 frames a second: rows of class 3, pedestrians"),
         ..PLAIN
     },
 ];

@@ -302,8 +302,9 @@ impl TrackColumns {
         match self.header.per_metre {
             None if self.is_mapped => {}
             None => notes.push(PIXELS.to_owned()),
-            Some(1000.0) if self.note.is_none() => notes.push("the positions are in millimetres".to_owned()),
-            Some(100.0) if self.note.is_none() => notes.push("the positions are in centimetres".to_owned()),
+            Some(per_metre) if self.note.is_none() => {
+                notes.extend(LengthUnit::words(per_metre).map(|unit| format!("the positions are in {unit}")));
+            }
             Some(_) => {}
         }
         notes

@@ -88,18 +88,14 @@ fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRo
         }
         let apart = |pair: &&[ControlPoint; 2]| pair[1].frame - pair[0].frame > LONGEST;
         lost += points.array_windows().filter(apart).count() + usize::from(points.len() < 2);
-        rows.extend(along(id, points)?);
-        if rows.len() > MOST_ROWS {
-            let problem = format!("the splines have more than {MOST_ROWS} positions; are the frames right?");
-            return Err(FilePlace::line(*line).wrong(problem));
-        }
+        along(id, points, &mut rows)?;
     }
     Ok((rows, lost))
 }
 
-/// The positions of a spline at the frames that are multiples of [`STEP`].
-fn along(id: i64, points: &[ControlPoint]) -> Result<Vec<TrackRow>, Misread> {
-    let mut rows: Vec<TrackRow> = Vec::new();
+/// Adds the positions of a spline at the frames that are multiples of [`STEP`].
+fn along(id: i64, points: &[ControlPoint], rows: &mut Vec<TrackRow>) -> Result<(), Misread> {
+    let begin = rows.len();
     for [before, after] in points.array_windows() {
         let apart = after.frame - before.frame;
         let place = FilePlace::line(after.line);
@@ -111,13 +107,17 @@ fn along(id: i64, points: &[ControlPoint]) -> Result<Vec<TrackRow>, Misread> {
         }
         let first = before.frame + (-before.frame).rem_euclid(STEP);
         for frame in (first..=after.frame).step_by(STEP as usize) {
-            if rows.last().is_some_and(|row| row.frame >= frame) {
+            if rows[begin..].last().is_some_and(|row| row.frame >= frame) {
                 continue;
             }
             let share = (frame - before.frame) as f64 / apart.max(1) as f64;
             let position = between(before.position, after.position, share);
             rows.push(TrackRow::numbered(frame, id, position, place));
         }
+        if rows.len() > MOST_ROWS {
+            let problem = format!("the splines have more than {MOST_ROWS} positions; are the frames right?");
+            return Err(place.wrong(problem));
+        }
     }
-    Ok(rows)
+    Ok(())
 }

@@ -3,29 +3,13 @@
 use std::fmt::Write as _;
 
 use ddl_core::PedestrianName;
-use serde::Serialize;
+use serde_json::json;
 
 use crate::clock::{Clock, FrameNumber, TimeUnit};
 use crate::error::DataError;
 use crate::format::kind::Format;
 use crate::observation::Observation;
 use crate::recording::Recording;
-
-#[derive(Serialize)]
-struct TrackLine {
-    track: WrittenTrack,
-}
-
-#[derive(Serialize)]
-struct WrittenTrack {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    f: Option<i64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    t: Option<FrameNumber>,
-    p: PedestrianName,
-    x: f64,
-    y: f64,
-}
 
 /// The recording as a file of the format, in order of frames. [`parse_recording`](crate::parse_recording) returns the
 /// same positions to the last bit. The frame rate is not written. The height and velocities of [`Format::Obsmat`],
@@ -65,21 +49,14 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
                 TimeUnit::Dates => unit,
                 _ => TimeUnit::Seconds,
             });
-            for seen in observations {
+            lines(&mut text, observations, |seen| {
                 let [x, y] = seen.position;
-                let track = WrittenTrack {
-                    f: unit.is_none().then_some(seen.frame),
-                    t: unit.map(|unit| time(unit, seen)),
-                    p: name(seen),
-                    x,
-                    y,
+                let (key, when) = match unit {
+                    None => ("f", json!(seen.frame)),
+                    Some(unit) => ("t", json!(time(unit, seen))),
                 };
-                let line = serde_json::to_string(&TrackLine { track });
-                text += &line.map_err(|error| DataError::Own {
-                    problem: error.to_string(),
-                })?;
-                text.push('\n');
-            }
+                json!({"track": {(key): when, "p": name(seen), "x": x, "y": y}}).to_string()
+            });
         }
         _ => {
             let problem = format!(

@@ -296,13 +296,12 @@ impl GoalModel {
     /// The share (0 to 1) of the paths of a recording that the model was trained on, under whatever name; `None` if it
     /// is no more than chance.
     pub fn known_share(&self, recording: &Recording) -> Option<f64> {
-        let mut learned = self.config.data.recordings.values();
-        let is_same = learned.any(|digest| *digest == digest_of_recording(recording));
-        if is_same {
-            Some(1.0)
-        } else {
-            self.fingerprints.known(recording)
+        let learned = &self.config.data.recordings;
+        let digest = (!learned.is_empty()).then(|| digest_of_recording(recording));
+        if digest.is_some_and(|digest| learned.values().any(|known| *known == digest)) {
+            return Some(1.0);
         }
+        self.fingerprints.known(&[recording])
     }
 
     pub(crate) fn fingerprints(&self) -> &TrackFingerprints {

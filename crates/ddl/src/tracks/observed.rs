@@ -3,7 +3,7 @@
 use crate::tracks::timed::many_frames;
 use ddl_data::{
     Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
-    PlausibilityWarning, Recording, Window,
+    PlausibilityWarning, Recording, TIME_STEP, Window,
 };
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -112,6 +112,7 @@ impl ObservedTracks {
         told.extend(self.misfits().map(|words| format!("warning: {words}")));
         told.extend(self.never_forecast().map(|words| format!("note: {words}")));
         told.extend(self.missing());
+        told.extend(self.ends_early());
         told
     }
 
@@ -130,6 +131,17 @@ impl ObservedTracks {
             self.recording.pedestrians().len(),
             self.recording.names().of(*first)
         ))
+    }
+
+    /// A note on a file that goes on after its last window.
+    fn ends_early(&self) -> Option<String> {
+        let last = self.windows.last()?.frames()[OBSERVED - 1];
+        let end = *self.recording.frames().last()?;
+        let gap = (end - last) as f64 * TIME_STEP / self.recording.frame_step() as f64;
+        (gap > LiveTracks::LONGEST_GAP).then(|| {
+            let [end, last] = [end, last].map(|tick| self.clock.words(tick));
+            format!("note: nobody is forecast at the end, {end}: the last forecast is made at {last}")
+        })
     }
 
     /// A note on the pedestrians at the last moment who are in no window.

@@ -27,13 +27,13 @@ impl TimedRecording {
     /// # Errors
     /// [`DdlError::Rate`] if a rate is given for rows with times, [`DdlError::Clock`] for a rate out of range.
     pub fn new(rows: &Recording, given: &TrackUnits, remembered: &TrackUnits) -> Result<Self, DdlError> {
-        let stated = rows.stated_clock().transpose()?;
         if let (Some(option), Some(_)) = (given.rate_option(), rows.time_unit()) {
             return Err(DdlError::Rate { option });
         }
         let mut notes = rows.notes().to_vec();
         notes.extend(note_of_rate(rows, given, remembered));
-        let clock = given.clock()?.or(stated);
+        let stated = || rows.stated_clock().transpose();
+        let clock = given.clock()?.map_or_else(stated, |clock| Ok(Some(clock)))?;
         let clock = clock.map_or_else(|| remembered.clock(), |clock| Ok(Some(clock)))?;
         let guessed = clock.is_none().then(|| {
             let step = many_frames(rows.frame_step());

@@ -82,14 +82,6 @@ pub struct TrainingProgress {
     pub step: TrainingStep,
 }
 
-impl TrainingProgress {
-    /// The progress after `step`, at these steps of the stage: done, and in total.
-    #[cfg(feature = "torch")]
-    pub(crate) fn at(steps: WorkDone, step: TrainingStep) -> Self {
-        Self { steps, step }
-    }
-}
-
 /// A step of one of the stages.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrainingStep {

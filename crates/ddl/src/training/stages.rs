@@ -76,7 +76,8 @@ pub(super) fn train(
     };
     let recordings = fold.training_recordings();
     goals::train(&stage, &windows, recordings, proposal, better, |steps, step| {
-        observe(&TrainingProgress::at(steps, TrainingStep::Goals(step.clone())))
+        let step = TrainingStep::Goals(step.clone());
+        observe(&TrainingProgress { steps, step })
     })?;
     if run.is_trained() {
         // A finished run must load: this reports a file that has been damaged since.
@@ -278,7 +279,8 @@ impl NetworkStage<'_> {
                 run.write_metrics(&epochs)?;
             }
             let due = step.finished_epoch.is_some() || saved.elapsed() > SAVE_EVERY;
-            let progress = TrainingProgress::at(trainer.steps(), TrainingStep::Network(step));
+            let (steps, step) = (trainer.steps(), TrainingStep::Network(step));
+            let progress = TrainingProgress { steps, step };
             let stop = observe(&progress).is_break();
             if due || stop {
                 trainer.save(&origin, &run.optimizer())?;

@@ -62,27 +62,21 @@ impl TrackFingerprints {
         }
     }
 
-    /// The share of the hashes of a recording that are known, if it is one of those that the model was trained on.
-    pub(crate) fn known(&self, recording: &Recording) -> Option<f64> {
-        self.known_from(KNOWN, recording)
+    /// The share of the hashes of recordings, which may be parts of one, that are known, if the model was trained on them.
+    pub(crate) fn known(&self, recordings: &[&Recording]) -> Option<f64> {
+        self.known_from(KNOWN, recordings)
     }
 
     /// Whether so few hashes are known that the model has not even been trained on a part of the recording.
     pub(crate) fn is_unknown(&self, recording: &Recording) -> bool {
-        self.known_from(KNOWN / 5.0, recording).is_none()
+        self.known_from(KNOWN / 5.0, &[recording]).is_none()
     }
 
-    /// As [`known`](Self::known), for recordings that may be parts of one.
-    pub(crate) fn known_together(&self, recordings: &[&Recording]) -> Option<f64> {
-        self.known_of(KNOWN, recordings.iter().flat_map(|recording| tracks_of(recording)))
-    }
-
-    fn known_from(&self, least: f64, recording: &Recording) -> Option<f64> {
-        self.known_of(least, tracks_of(recording))
-    }
-
-    fn known_of(&self, least: f64, tracks: impl IntoIterator<Item = Vec<Position>>) -> Option<f64> {
-        let all = tracks.into_iter().flat_map(hashes);
+    fn known_from(&self, least: f64, recordings: &[&Recording]) -> Option<f64> {
+        let all = recordings
+            .iter()
+            .flat_map(|recording| tracks_of(recording))
+            .flat_map(hashes);
         let all: BTreeSet<u32> = all.filter(|hash| hash % self.one_in == 0).collect();
         let known = all.iter().filter(|hash| self.hashes.binary_search(hash).is_ok());
         let known = known.count();
@@ -211,7 +205,7 @@ mod tests {
         let first = &recordings[0];
         let half = first.frames()[first.frames().len() / 2];
         let known = |least: f64, change: &dyn Fn(Observation) -> Option<Observation>| {
-            let share = learned.known(&changed(first, change)).unwrap();
+            let share = learned.known(&[&changed(first, change)]).unwrap();
             assert!(share >= least, "{share} {least}");
         };
         known(1.0, &Some);
@@ -234,7 +228,7 @@ mod tests {
         // Every other row is lost.
         known(0.3, &|row| (row.frame / first.frame_step() % 2 == 0).then_some(row));
         for other in &recordings[2..] {
-            assert_eq!(learned.known(other), None, "{}", other.name());
+            assert_eq!(learned.known(&[other]), None, "{}", other.name());
         }
     }
 

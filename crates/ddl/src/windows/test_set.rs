@@ -321,7 +321,7 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
     let mut known: Vec<String> = known.collect();
     if known.is_empty() && recordings.len() > 1 {
         // Each may be too short to be known.
-        let together = goals.fingerprints().known_together(recordings);
+        let together = goals.fingerprints().known(recordings);
         known.extend(together.map(|share| format!("these together ({:.0} % of their paths are known)", 100.0 * share)));
     }
     if known.is_empty() {
