@@ -83,7 +83,7 @@ fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
         let report = report(&place, "results", "mine");
         let mine = row(&report, "fair", "mine");
         let selection = mine.conditions.selection.as_deref().unwrap();
-        assert_eq!(selection, "made by another program, read from forecasts.jsonl");
+        assert_eq!(selection, "made by another program");
         assert_eq!(mine.scores.pedestrians, pedestrians);
         assert_eq!(mine.conditions.window_rule, WindowRule::Published);
         let page = place.text("results/report.md");
@@ -117,7 +117,7 @@ fn a_part_of_the_pedestrians_is_scored_only_on_request() {
     assert!(summary.contains("  some\n"), "{summary}");
     let report = report(&place, "part", "some");
     // Followed by a digest of the pedestrians, the same in every row.
-    let subset = format!("pedestrians forecast by some.jsonl: {count} of {whole_count}, digest ");
+    let subset = format!("pedestrians forecast by another program: {count} of {whole_count}, digest ");
     let first = &report.rows()[0].conditions.test_subset;
     assert!(first.as_deref().unwrap().starts_with(&subset), "{first:?}");
     for row in report.rows() {

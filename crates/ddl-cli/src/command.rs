@@ -18,6 +18,7 @@ pub(crate) mod view;
 pub(crate) mod windows;
 
 use crate::progress::ProgressMode;
+use crate::telling::tell;
 use crate::units::Units;
 use crate::{output, recordings, result_lines};
 use anyhow::{Context as _, bail};
@@ -108,6 +109,7 @@ impl Reporting {
             output::print(&(report.to_json()? + "\n"))
         } else if self.telling.progress == ProgressMode::Json {
             // Standard output already holds the lines of progress.
+            tell(format_args!("{}", result_lines::lines(report, rest).trim_end()));
             Ok(())
         } else {
             output::print(&result_lines::lines(report, rest))
@@ -174,6 +176,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         let files = recordings::files(&[data.to_owned()], units)?;
         let read = recordings::read(&files, units)?;
         recordings::tell_notes(&read);
+        recordings::tell_ticks(&read);
         recordings::warn_of_implausible(&read);
         return Ok(Dataset::own(read.into_iter().map(|read| read.recording).collect())?);
     }

@@ -89,6 +89,9 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
                 folder.display()
             );
         }
+        if ["evaluate", "report", "benchmark"].contains(&name) {
+            ensure_no_other_run(output, &inputs)?;
+        }
         for input in &inputs {
             // A report reads the results in the folders of runs. Other commands add to a run.
             let of_report = name == "report" && output.path.is_dir() && place(output.path) == place(input.path);
@@ -102,6 +105,21 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
                 );
             }
         }
+    }
+    Ok(())
+}
+
+/// Refuses the folder of a run that is no input: its results would be replaced by others.
+fn ensure_no_other_run(output: &Named<'_>, inputs: &[Named<'_>]) -> anyhow::Result<()> {
+    let mut files = ["config.json", "model.safetensors"].iter();
+    let is_run = files.all(|file| output.path.join(file).is_file());
+    let is_same = |input: &Named<'_>| RUNS.contains(&input.option.as_str()) && place(input.path) == place(output.path);
+    if is_run && !inputs.iter().any(is_same) {
+        bail!(
+            "{} is the folder of a run, whose results would be replaced; give another {}",
+            output.path.display(),
+            output.option
+        );
     }
     Ok(())
 }

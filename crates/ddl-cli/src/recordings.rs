@@ -81,6 +81,22 @@ pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ReadRecording>) 
     tell_grouped("note", notes);
 }
 
+/// Says what the frame numbers of windows and results count, where that is not what the files count.
+pub(crate) fn tell_ticks(read: &[ReadRecording]) {
+    let finer = read.iter().filter(|read| !read.clock.counts_frames());
+    let counted = finer.map(|read| {
+        let counted = match read.clock.tick(1) {
+            Ok(ticks) if ticks > 1 => format!("parts of a frame, {ticks} in each"),
+            _ => "microseconds".to_owned(),
+        };
+        (
+            read.recording.name(),
+            format!("the frames of windows and results count {counted}"),
+        )
+    });
+    tell_grouped("note", counted);
+}
+
 pub(crate) fn read_each<'f>(
     files: &'f [PathBuf],
     units: &Units,

@@ -66,7 +66,7 @@ impl PedestrianScores {
                 goal_fde: goal_fde(scene, i),
                 kde_nll: kde_nll(scene, i),
                 distribution: DistributionErrors::of(scene, i),
-                diversity: Diversity::of(scene, i),
+                diversity: Diversity::of(forecast, i),
                 weight_log_loss: weight_log_loss(scene, i),
                 regions: RegionScores::of(scene, i),
                 familiarity: forecast.familiarity(i),

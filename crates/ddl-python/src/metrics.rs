@@ -112,14 +112,8 @@ pub(crate) fn mahalanobis(
 #[pyfunction]
 pub(crate) fn spread_between(py: Python<'_>, paths: Paths<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let forecast = forecast(&paths, None, None)?;
-    let truth: Vec<Vec<Position>> = (0..forecast.pedestrians())
-        .map(|i| vec![[0.0; 2]; OBSERVED + forecast.hypothesis(i, 0).len()])
-        .collect();
-    let ids = (0..truth.len() as i64).map(PedestrianId).collect();
-    let window = Window::new("scene", 0, 1, ids, truth).map_err(of_any)?;
-    let scene = ScoredWindow::new(&window, &forecast).map_err(of_any)?;
     let n = forecast.pedestrians();
-    let diversity: Vec<Diversity> = several((0..n).map(|i| Diversity::of(&scene, i)))?;
+    let diversity: Vec<Diversity> = several((0..n).map(|i| Diversity::of(&forecast, i)))?;
     let paths = diversity.iter().map(|diversity| diversity.path).collect();
     let ends = diversity.iter().map(|diversity| diversity.ends).collect();
     Ok((array(py, paths, [n])?, array(py, ends, [n])?))

@@ -42,12 +42,18 @@ impl Pack {
             (None, Some(model)) => vec![(self.out.clone(), pack_model(model, &self.out)?)],
             (None, None) => Vec::new(),
         };
+        if self.telling.json {
+            let files = packed
+                .iter()
+                .map(|(file, numbers)| json!({"file": file, "weights": numbers}));
+            let files: Vec<_> = files.collect();
+            return match (&self.benchmark, &files[..]) {
+                (None, [file]) => output::print_json(file),
+                _ => output::print_json(&files),
+            };
+        }
         for (file, numbers) in packed {
-            if self.telling.json {
-                output::print_json(&json!({"file": file, "weights": numbers}))?;
-            } else {
-                output::print(&format!("{}: {numbers} weights\n", file.display()))?;
-            }
+            output::print(&format!("{}: {numbers} weights\n", file.display()))?;
         }
         Ok(())
     }

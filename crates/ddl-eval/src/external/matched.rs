@@ -45,8 +45,7 @@ impl Matched {
         let scored: usize = self.windows.iter().map(Window::len).sum();
         (scored < self.pedestrians).then(|| {
             format!(
-                "pedestrians forecast by {}: {scored} of {}, digest {}",
-                self.file,
+                "pedestrians forecast by another program: {scored} of {}, digest {}",
                 self.pedestrians,
                 self.digest()
             )

@@ -33,7 +33,7 @@ pub fn measure(conditions: &Conditions, matched: &Matched) -> Result<Vec<ResultR
         .collect();
     let conditions = Conditions {
         test_subset: (!subsets.is_empty()).then(|| subsets.join("; ")),
-        selection: Some(format!("made by another program, read from {}", matched.file)),
+        selection: Some("made by another program".to_owned()),
         ..conditions.clone()
     };
     let forecasts = conditions

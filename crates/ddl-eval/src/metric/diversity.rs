@@ -10,7 +10,9 @@
 //! # References
 //! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020 (APD).
 
-use crate::scored_window::ScoredWindow;
+use ddl_core::{Forecast, average_displacement};
+
+use crate::metric::displacement::final_displacement;
 
 /// Mean distances between the hypotheses of one pedestrian.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,26 +25,17 @@ pub struct Diversity {
 
 impl Diversity {
     /// The diversity of pedestrian `i`; `None` for forecasts of one hypothesis.
-    pub fn of(scene: &ScoredWindow<'_>, i: usize) -> Option<Self> {
-        let (forecast, k) = (scene.forecast(), scene.hypotheses());
+    pub fn of(forecast: &Forecast, i: usize) -> Option<Self> {
+        let k = forecast.hypotheses();
         if k < 2 {
             return None;
         }
         let (mut path, mut ends) = (0.0, 0.0);
         for a in 0..k {
             for b in a + 1..k {
-                let pairs = forecast.hypothesis(i, a).iter().zip(forecast.hypothesis(i, b));
-                let mut steps = 0_usize;
-                let (mut sum, mut last) = (0.0, 0.0);
-                for (p, q) in pairs {
-                    let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
-                    // The square of a position does not overflow, because coordinates are bounded.
-                    last = (dx * dx + dy * dy).sqrt();
-                    sum += last;
-                    steps += 1;
-                }
-                path += sum / steps as f64;
-                ends += last;
+                let [one, other] = [a, b].map(|k| forecast.hypothesis(i, k));
+                path += average_displacement(one, other);
+                ends += final_displacement(one, other);
             }
         }
         let pairs = (k * (k - 1) / 2) as f64;

@@ -107,9 +107,10 @@ class Results:
         Raises
         ------
         ValueError
-            The row or its score is missing, or a fold has several rows.
+            The row or its score is missing, a fold has several rows, or rows of several models or conditions match.
         """
         values: dict[str, float] = {}
+        kinds = set()
         for row in self.rows:
             conditions = row["conditions"]
             if conditions["protocol"] != protocol:
@@ -122,6 +123,14 @@ class Results:
             if row["scores"].get(score) is None:
                 raise ValueError(f"the rows have no score {score!r}")
             values[conditions["fold"]] = row["scores"][score]
+            rule_of_row = json.dumps(conditions["window_rule"])
+            is_part = conditions.get("test_subset") is not None
+            kinds.add((conditions["convention"], rule_of_row, conditions["forecaster"], is_part))
+            if len(kinds) > 1:
+                raise ValueError(
+                    "rows of several models, conventions, window rules or parts of the test windows match: choose by "
+                    f"name and rule: {self._choices(protocol)}"
+                )
         if not values:
             raise ValueError(f"no row matches under the protocol {protocol!r}")
         return float(np.mean(list(values.values())))

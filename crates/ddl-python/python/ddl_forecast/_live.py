@@ -78,7 +78,7 @@ class Live:
         self._next = LARGEST
         self._turn = threading.Lock()
         self._told = False
-        self._doubted = False
+        self._doubts: set[str] = set()
 
     def observe(
         self,
@@ -127,16 +127,18 @@ class Live:
                 f"the memory could not be written, the next attempt follows in a minute: {unwritten}", stacklevel=2
             )
         forecast = None if parts is None else Forecast._of(parts, joint=self._joint)
-        doubt = None if forecast is None else forecast.unfamiliar()
+        wrong = None
         if misfit is not None:
-            doubt = (
+            wrong = (
                 f"pedestrian {misfit[0]} is {misfit[1]:.1f} m from where it was expected; check that positions are in "
                 "metres. Such positions are left out until others agree with them"
             )
-        if doubt is not None and not self._doubted:
-            self._doubted = True
-            moment = f"frame {frame}" if time is None else f"time {time}"
-            warnings.warn(f"{moment}: {doubt}; this warning appears once", DoubtWarning, stacklevel=2)
+        unfamiliar = None if forecast is None else forecast.unfamiliar()
+        for kind, doubt in (("wrong", wrong), ("unfamiliar", unfamiliar)):
+            if doubt is not None and kind not in self._doubts:
+                self._doubts.add(kind)
+                moment = f"frame {frame}" if time is None else f"time {time}"
+                warnings.warn(f"{moment}: {doubt}; this warning appears once", DoubtWarning, stacklevel=2)
         return forecast
 
     def _moment(self, frame: int | None, time: float | np.datetime64 | datetime | None) -> tuple[int, str | None]:

@@ -103,6 +103,8 @@ fn rank(standing: &Standing, subject: &StandingLine) -> String {
 
 fn facts(standing: &Standing, subject: &StandingLine) -> Markup {
     let [pedestrians, windows] = subject.scored.map(grouped);
+    let measured = standing.folds.iter().zip(&subject.folds);
+    let measured = measured.filter_map(|(fold, errors)| errors.is_some().then_some(fold.as_str()));
     let facts = [
         (
             "Measured",
@@ -115,7 +117,7 @@ fn facts(standing: &Standing, subject: &StandingLine) -> Markup {
             "On",
             format!(
                 "{pedestrians} pedestrians in {windows} test windows of {}; scored: {}",
-                standing.folds.join(", "),
+                measured.collect::<Vec<_>>().join(", "),
                 standing.shared.test_subset.as_deref().unwrap_or("all test windows")
             ),
         ),

@@ -50,7 +50,9 @@ impl Standing {
     /// with every fold measured, without its own variations.
     pub(super) fn others<'a>(&'a self, line: &'a StandingLine) -> impl Iterator<Item = &'a StandingLine> {
         let is_other = |other: &&StandingLine| {
-            let is_variation = other.conditions.forecaster.starts_with(&line.conditions.forecaster);
+            let is_variation = std::ptr::eq(*other, line)
+                || line.conditions.epochs.is_some()
+                    && other.conditions.forecaster.starts_with(&line.conditions.forecaster);
             other.mean.is_some() && other.hypotheses == line.hypotheses && !is_variation
         };
         self.lines.iter().filter(is_other)

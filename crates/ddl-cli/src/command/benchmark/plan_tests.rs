@@ -1,6 +1,6 @@
 //! Tests of the plan and its file.
 
-use super::super::fixture::{self, plan, settings};
+use super::super::fixture::{plan, settings};
 use super::*;
 
 fn published(folds: &[&str], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Plan> {
@@ -43,15 +43,6 @@ fn a_task_becomes_arguments_of_the_program() {
          --learning-rate 0.0015 --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
          --progress json"
     );
-    // Without options the recommended recipe is used unchanged.
-    let recommended = Settings {
-        train_pedestrians: None,
-        proposal_steps: None,
-        ..settings(Recipe::Recommended)
-    };
-    let recommended = fixture::plan(recommended, &["eth"], &[Method::FULL], &[7]).unwrap();
-    let words = train(&recommended);
-    assert!(words.contains("--epochs 4 --recipe recommended --out"), "{words}");
     plan.settings.data = None;
     plan.settings.test_pedestrians = Some(9);
     assert_eq!(

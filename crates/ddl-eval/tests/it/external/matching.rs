@@ -105,7 +105,10 @@ fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
     let two = line(70, 5, &hypothesis(2.0)) + &line(70, 4, &hypothesis(9.0));
     // The digests are of "yard", 70 and the pedestrian, computed with Python's hashlib.
     let (matched, rows, named) = subset(&two, Coverage::Intersection, None);
-    assert_eq!(named, "pedestrians forecast by f: 1 of 3, digest f5c3a037");
+    assert_eq!(
+        named,
+        "pedestrians forecast by another program: 1 of 3, digest f5c3a037"
+    );
     let windows = &matched.windows;
     assert_eq!(windows.len(), 1);
     assert_eq!(windows[0].pedestrians(), [PedestrianId(5)]);
@@ -117,7 +120,7 @@ fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
     let every = "every second window";
     let other = line(70, 3, &hypothesis(2.0));
     let (.., named) = subset(&other, Coverage::Intersection, Some(every));
-    let part = "pedestrians forecast by f: 1 of 3, digest 0f80b53d";
+    let part = "pedestrians forecast by another program: 1 of 3, digest 0f80b53d";
     assert_eq!(named, format!("{every}; {part}"));
     assert_eq!(subset(&whole(), Coverage::Whole, Some(every)).2, every);
 }

@@ -59,12 +59,12 @@ fn forecasts_of_another_program_are_not_called_untrained() {
     let mut rows = of_forecaster(five_folds(Protocol::Fair, 1, 0.25), "mine");
     for row in &mut rows {
         row.conditions.seed = None;
-        row.conditions.selection = Some("made by another program, read from mine.jsonl".to_owned());
+        row.conditions.selection = Some("made by another program".to_owned());
     }
     let report = Report::new("Mine", rows).unwrap();
     let markdown = report.to_markdown();
     let said = line(&markdown, "- mine: ");
-    assert!(said.contains("read from mine.jsonl") && said.contains("not known here"));
+    assert!(said.contains("made by another program") && said.contains("not known here"));
     assert!(said.contains("scored at commit 0123abc"), "{said}");
     assert!(!said.contains("nothing random") && !said.contains("not trained"));
     let page = ddl_report::page::Page::new(&report).to_html().unwrap();
