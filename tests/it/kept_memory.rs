@@ -91,6 +91,20 @@ fn a_stream_cut_in_two_continues_with_its_memory() {
 }
 
 #[test]
+fn a_session_that_ends_with_clear_is_kept() {
+    let place = Place::with_model();
+    let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
+    let (mut file, memory) = MemoryFile::open(&place.at("hall.memory")).unwrap();
+    let live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(FRAME_STEP).unwrap());
+    let mut live = live.remembering(memory).unwrap();
+    let _ = hypotheses_of(&mut live, &rows(0..50));
+    live.clear();
+    assert_eq!(file.end(live.place().unwrap().clone()).unwrap(), None);
+    let kept = SceneMemory::read(&place.at("hall.memory")).unwrap();
+    assert_eq!(kept.summary().frames, 50);
+}
+
+#[test]
 fn a_memory_of_another_place_stays_as_it_is() {
     let place = Place::with_model();
     remember(&place, "hall.memory", &rows(0..300), FRAME_STEP);

@@ -119,6 +119,23 @@ fn words_are_returned_as_written() {
     place.fails("forecast twice.csv", &["pedestrian 7f3e-aa41 is in frame 90 already"]);
 }
 
+#[test]
+fn what_ends_before_the_file_and_what_takes_precedence() {
+    let place = Place::empty();
+    let walk = own_tracks::csv(&own_tracks::three_pedestrians(10));
+    place.write("late.csv", walk.clone() + "900,77,0,0\n");
+    let told = place
+        .run("forecast late.csv --frame-step 10 --last --one --threads 1")
+        .stderr;
+    assert!(
+        told.contains("nobody is forecast at the end, frame 900: the last forecast is made at frame 90"),
+        "{told}"
+    );
+    place.write("fast.csv", "# fps: 1e12\n".to_owned() + &walk);
+    let _ = place.ok("forecast fast.csv --frame-step 10 --last --one --threads 1");
+    place.fails("forecast fast.csv --last", &["frame"]);
+}
+
 /// Each on a clock of its own: at every moment one of them is carried on, under its name.
 #[test]
 fn carried_pedestrians_keep_their_words() {

@@ -139,5 +139,8 @@ def test_wrong_arguments_are_refused_at_once_and_models_are_distinguished():
     with pytest.raises(ValueError, match="choose by name"):
         (one + two).mean()
     assert (one + two).mean(name="a") == one.mean() != (one + two).mean(name="b")
+    other = ddl.evaluate(constant_velocity, convention="simulated", folds=["doorway"], name="b")
+    with pytest.raises(ValueError, match="several models"):
+        (one + other).mean()
     with pytest.raises(ValueError, match="no score"):
         one.mean("goal_fde")

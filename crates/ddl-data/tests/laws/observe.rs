@@ -382,6 +382,27 @@ fn told(rate: f64, pedestrians: i64, from: usize, moved: impl Fn(i64, Position) 
     (observed.misfits, observed.windows.pop().unwrap())
 }
 
+/// A row that may be a sudden turn is known to be wrong only by the next one, which counts.
+#[test]
+fn the_wrong_of_two_rows_is_named() {
+    let mut tracks = LiveTracks::new();
+    for frame in 0..42 {
+        let x = 0.72 * frame as f64 - if frame == 40 { 1.4 } else { 0.0 };
+        tracks.push(frame, [(PedestrianId(1), [x, 0.0])]).unwrap();
+    }
+    assert!(matches!(
+        tracks.misfits(),
+        [Misfit {
+            tick: 40,
+            treatment: MisfitTreatment::LeftOut,
+            ..
+        }]
+    ));
+    assert!(!tracks.has_left_out(PedestrianId(1)));
+    tracks.push(42, [(PedestrianId(1), [0.0, 0.0])]).unwrap();
+    assert!(matches!(tracks.misfits(), [Misfit { tick: 42, .. }]) && tracks.has_left_out(PedestrianId(1)));
+}
+
 #[test]
 fn a_wrong_position_is_left_out_and_told() {
     for rate in [2.5, 7.0, 10.0, 25.0] {

@@ -253,6 +253,23 @@ fn long_gaps_begin_another_run() {
     }
 }
 
+/// Nobody walks from one track to another that has its id from then on.
+#[test]
+fn tracks_that_begin_anew_are_not_joined() {
+    let mut memory = SceneMemory::new(4, 1_000).unwrap();
+    for frame in 0..240 {
+        let row = [(
+            PedestrianId(1),
+            [0.12 * frame as f64, if frame < 118 { 0.0 } else { 3.0 }],
+        )];
+        let begun: &[_] = if frame == 118 { &[PedestrianId(1)] } else { &[] };
+        memory.observe_begun(frame, row, begun).unwrap();
+    }
+    let track = memory.tracks().next().unwrap();
+    assert!(track.iter().all(|[_, y]| [0.0, 3.0].contains(y)), "{track:?}");
+    assert_eq!((memory.segments(), memory.summary().pedestrians), (11 + 12, 1));
+}
+
 /// The positions of all pedestrians, each once, without gaps; pedestrians without a segment are left out.
 #[test]
 fn tracks_are_the_positions_held() {

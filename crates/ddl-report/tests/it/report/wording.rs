@@ -61,6 +61,14 @@ fn forecasts_of_another_program_are_not_called_untrained() {
         row.conditions.seed = None;
         row.conditions.selection = Some("made by another program".to_owned());
     }
+    let mut named_alike = rows.clone();
+    for row in &mut named_alike {
+        row.conditions.forecaster = "mine (faster)".to_owned();
+        row.conditions.selection = None;
+        row.scores.min_ade = 0.125;
+    }
+    let verdict = verdict_of([rows.clone(), named_alike].concat());
+    assert!(verdict.contains("mine (faster) has the least error"), "{verdict}");
     let report = Report::new("Mine", rows).unwrap();
     let markdown = report.to_markdown();
     let said = line(&markdown, "- mine: ");
