@@ -132,7 +132,7 @@ typedef struct ddl_view {
   const double *familiarity;
   // `[N][12]`: scale of Student's t, three degrees of freedom, around the hypothesis that is followed, metres.
   const double *spread;
-  // `[misfit_count]`: rows of this frame that do not fit.
+  // `[misfit_count]`: rows that this frame showed to be wrong, and tracks that it began anew.
   const struct ddl_misfit *misfits;
   // Their number.
   size_t misfit_count;

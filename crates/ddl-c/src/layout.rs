@@ -146,7 +146,7 @@ pub struct ddl_view {
     pub familiarity: *const f64,
     /// `[N][12]`: scale of Student's t, three degrees of freedom, around the hypothesis that is followed, metres.
     pub spread: *const f64,
-    /// `[misfit_count]`: rows of this frame that do not fit.
+    /// `[misfit_count]`: rows that this frame showed to be wrong, and tracks that it began anew.
     pub misfits: *const ddl_misfit,
     /// Their number.
     pub misfit_count: usize,

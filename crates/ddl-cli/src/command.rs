@@ -93,6 +93,17 @@ pub(crate) struct Telling {
     pub(crate) json: bool,
 }
 
+impl Telling {
+    /// Prints results in words: on standard error where standard output has lines of progress.
+    pub(crate) fn print(&self, text: &str) -> anyhow::Result<()> {
+        if self.progress == ProgressMode::Json {
+            tell(format_args!("{}", text.trim_end()));
+            return Ok(());
+        }
+        output::print(text)
+    }
+}
+
 /// How results and progress are printed.
 #[derive(Debug, Args)]
 pub(crate) struct Reporting {
@@ -107,12 +118,8 @@ impl Reporting {
     fn print(&self, report: &Report, rest: &str) -> anyhow::Result<()> {
         if self.telling.json {
             output::print(&(report.to_json()? + "\n"))
-        } else if self.telling.progress == ProgressMode::Json {
-            // Standard output already holds the lines of progress.
-            tell(format_args!("{}", result_lines::lines(report, rest).trim_end()));
-            Ok(())
         } else {
-            output::print(&result_lines::lines(report, rest))
+            self.telling.print(&result_lines::lines(report, rest))
         }
     }
 }

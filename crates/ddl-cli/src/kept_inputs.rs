@@ -111,10 +111,16 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
 
 /// Refuses the folder of a run that is no input: its results would be replaced by others.
 fn ensure_no_other_run(output: &Named<'_>, inputs: &[Named<'_>]) -> anyhow::Result<()> {
-    let mut files = ["config.json", "model.safetensors"].iter();
-    let is_run = files.all(|file| output.path.join(file).is_file());
-    let is_same = |input: &Named<'_>| RUNS.contains(&input.option.as_str()) && place(input.path) == place(output.path);
-    if is_run && !inputs.iter().any(is_same) {
+    let holds = |file: &&str| output.path.join(file).is_file();
+    let weights = ["model.safetensors", "proposal.safetensors", "experts.safetensors"];
+    let is_run = holds(&"config.json") && weights.iter().any(holds);
+    let here = place(output.path);
+    let is_of_it = |input: &Named<'_>| {
+        let there = place(input.path);
+        let folder = there.as_deref().and_then(Path::parent);
+        RUNS.contains(&input.option.as_str()) && (there == here || folder == here.as_deref())
+    };
+    if is_run && !inputs.iter().any(is_of_it) {
         bail!(
             "{} is the folder of a run, whose results would be replaced; give another {}",
             output.path.display(),

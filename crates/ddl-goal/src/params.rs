@@ -90,7 +90,8 @@ impl GoalEstimatorParams {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// If a count is out of range, gamma is negative or not finite, or the query reads the future in the frame `Heading`.
+    /// If a count is out of range, gamma is negative or not finite, or the query reads the future in the frame
+    /// `Heading`.
     pub fn check(&self) -> Result<(), ParamsError> {
         for (field, value, most, rule) in [
             ("experts", self.experts, usize::MAX, "at least 1 (the paper uses 100)"),

@@ -22,7 +22,7 @@ const OLDEST: usize = 8;
 /// after the first row after a gap. Where no row is at a step, the position lies between two rows.
 ///
 /// - A run of segments ends where a pedestrian has no row for more than 1.2 s. A track ends after more than 8 steps
-///   (3.2 s) without a row; if the same id returns later, a new track begins.
+///   (3.2 s) without a position; if the same id returns later, a new track begins.
 /// - Two segments are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
 /// - A track is kept in runs of up to 8 segments. A run is removed if its first and its last segment are both similar
 ///   to segments of an earlier run of the same track, except the run right before it. Of the remaining runs, the

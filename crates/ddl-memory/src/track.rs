@@ -119,7 +119,7 @@ impl RunningTrack {
         frame - self.last > MAX_ABSENCE_STEPS * step
     }
 
-    /// Adds a row. Rows between two steps add the positions at the steps that lie between them, on straight lines.
+    /// Adds a row, and the positions at the steps between it and the row before, on a straight line.
     /// Returns the numbers of segments added and removed.
     pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
         let (mut new, mut gone) = (0, 0);

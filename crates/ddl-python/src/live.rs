@@ -39,7 +39,7 @@ struct Answer {
     /// `None` without pedestrians to forecast.
     forecast: Option<(Window, PlainOrCertified)>,
     /// The pedestrians whose position does not fit their track, with its distance (m) from where it was expected.
-    misfits: Vec<(i64, f64)>,
+    misfits: Vec<(i64, f64, String)>,
     /// An error if the memory could not be written.
     unwritten: Option<String>,
 }
@@ -63,8 +63,12 @@ impl WatchedPlace {
             // The frame has been observed, so a full disk must not discard its forecast.
             unwritten = file.write(place).err().map(|error| error.to_string());
         }
-        let misfits = self.live.tracks().misfits().iter();
-        let misfits = misfits.map(|misfit| (misfit.pedestrian.0, misfit.distance));
+        let tracks = self.live.tracks();
+        let misfits = tracks.misfits().iter();
+        let misfits = misfits.map(|misfit| {
+            let when = tracks.clock().words(misfit.tick);
+            (misfit.pedestrian.0, misfit.distance, when)
+        });
         Ok(Answer {
             forecast,
             misfits: misfits.collect(),
@@ -169,7 +173,7 @@ impl Live {
         ids: PyReadonlyArray1<'py, i64>,
         xy: PyReadonlyArray2<'py, f64>,
         words: BTreeMap<i64, String>,
-    ) -> PyResult<(Option<Bound<'py, PyDict>>, Vec<(i64, f64)>, Option<String>)> {
+    ) -> PyResult<(Option<Bound<'py, PyDict>>, Vec<(i64, f64, String)>, Option<String>)> {
         let moments = match unit {
             Some(unit) => Moments::of_times(unit_named(unit)?),
             None => Moments {

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub enum ReportError {
     #[error(
         "two results of `{row}` on fold `{fold}` name the same conditions but differ \
-         (minADE {first} and {second}); remove one of the runs, or give them different seeds"
+         (minADE {first} and {second}); remove one of them, or give them different seeds or names"
     )]
     Conflict {
         row: String,

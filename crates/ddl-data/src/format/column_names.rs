@@ -76,7 +76,7 @@ const LENGTH_UNITS: [(&str, LengthUnit); 7] = [
     ("mm millimetres millimeters", LengthUnit::PerMetre(1000.0)),
     ("km kilometres kilometers", LengthUnit::PerMetre(0.001)),
     ("ft feet foot", LengthUnit::PerMetre(3.280_839_895_013_123)),
-    ("inch inches", LengthUnit::PerMetre(39.370_078_740_157_48)),
+    ("in inches inch", LengthUnit::PerMetre(39.370_078_740_157_48)),
     ("px pix pixel pixels", LengthUnit::Pixels),
 ];
 
@@ -161,8 +161,12 @@ pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
         index,
         role,
         time_unit: of_time.filter(|_| role == Role::Time),
-        // A column called `px` is a coordinate; only a further word, as in `x_px`, is a unit.
-        length: unit_of(&LENGTH_UNITS, last).filter(|_| matches!(role, Role::X | Role::Y) && words.len() > 1),
+        // A column called `px` is a coordinate; only a further word, as in `x_px`, is a unit. `x_in` is where somebody
+        // enters, `x [in]` are inches.
+        length: unit_of(&LENGTH_UNITS, last).filter(|_| {
+            let is_unit = last != "in" || name.ends_with([']', ')']);
+            is_unit && matches!(role, Role::X | Role::Y) && words.len() > 1
+        }),
     }
 }
 

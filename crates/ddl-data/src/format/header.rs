@@ -148,7 +148,8 @@ impl Roles<'_> {
         let mut faults = self.repeated();
         faults.extend(self.not_there(choice));
         faults.extend(self.other_rows());
-        faults.extend(self.mixed_units());
+        // The unit that is given is that of both.
+        faults.extend(self.mixed_units().filter(|_| choice.unit.is_none()));
         let time = self.of(Role::Time).or(self.of(Role::Frame));
         let parts = time.zip(self.of(Role::Pedestrian)).zip(self.place());
         let Some(((time, pedestrian), place)) = parts.filter(|_| faults.is_empty()) else {
@@ -338,12 +339,19 @@ impl Roles<'_> {
 
     fn mixed_units(&self) -> Option<Fault> {
         let [x, y] = [self.of(Role::X)?, self.of(Role::Y)?];
-        let [of_x, of_y] = [x, y].map(|named| named.length.unwrap_or(LengthUnit::PerMetre(1.0)));
-        (of_x != of_y).then(|| {
+        // `agent_px` beside `agent_py` is a coordinate, not a unit.
+        let are_alike = match [x.length, y.length] {
+            [Some(LengthUnit::Pixels), None] | [None, Some(LengthUnit::Pixels)] => true,
+            lengths => {
+                let [of_x, of_y] = lengths.map(|length| length.unwrap_or(LengthUnit::PerMetre(1.0)));
+                of_x == of_y
+            }
+        };
+        (!are_alike).then(|| {
             let [of_x, of_y] = [x, y].map(|named| quoted(self.names[named.index]));
             (
                 Some(y.index),
-                format!("the columns {of_x:?} and {of_y:?} have different units"),
+                format!("the columns {of_x:?} and {of_y:?} have different units; --unit gives that of both"),
             )
         })
     }

@@ -10,6 +10,7 @@ use crate::format::kind::Format;
 use crate::format::order::{MOST_ROWS, Order, order};
 use crate::format::place::FilePlace;
 use crate::format::separator::Separator;
+use crate::format::text::end_of_lines;
 use crate::format::vsp;
 
 /// Least height in the fifth column of a file in centimetres: people in metres are lower.
@@ -105,7 +106,7 @@ struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     fn of(text: &'a str) -> Self {
-        let end = if text.contains('\n') { '\n' } else { '\r' };
+        let end = end_of_lines(text);
         Self { text, end }
     }
 

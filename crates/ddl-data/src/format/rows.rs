@@ -43,8 +43,8 @@ impl TrackRow {
 
 type Placed = (Observation, FilePlace);
 
-/// The recording of all rows, with an inferred frame step. `advice_on_same` is advice on two lines with one pedestrian in
-/// one frame.
+/// The recording of all rows, with an inferred frame step. `advice_on_same` is advice on two lines with one pedestrian
+/// in one frame.
 pub(super) fn into_recording(
     rows: Vec<TrackRow>,
     origin: &str,

@@ -1,6 +1,7 @@
 //! Files of text with one observation per line.
 
 use crate::format::choice::ColumnChoice;
+use crate::format::column_names::is_known;
 use crate::format::comments::{is_comment, rate_of};
 use crate::format::header::Header;
 use crate::format::kind::Format;
@@ -36,20 +37,25 @@ impl TextFile {
 }
 
 /// Old spreadsheets end lines with a carriage return alone.
-fn end_of_lines(text: &str) -> char {
+pub(super) fn end_of_lines(text: &str) -> char {
     if text.contains('\n') { '\n' } else { '\r' }
 }
 
-/// The number of a line below this one that names the columns of a table: titles stand above it.
+/// The number of a line below this one that names the columns of a table: titles stand above it, no rows.
 fn header_below(text: &str, line: usize, choice: &ColumnChoice) -> Option<usize> {
-    let mut below = (1..).zip(text.split(end_of_lines(text))).skip(line).take(MOST_TITLES);
-    let is_header = |text: &str| {
-        let fields = Separator::of(text).fields(text, line);
-        fields.is_ok_and(|fields| Header::of(&fields.iter().map(|field| &**field).collect::<Vec<_>>(), choice).is_ok())
-    };
-    below
-        .find(|(_, text)| !text.trim().is_empty() && is_header(text))
-        .map(|(below, _)| below)
+    let lines = (1..).zip(text.split(end_of_lines(text))).skip(line - 1);
+    for (number, text) in lines.take(MOST_TITLES).filter(|(_, text)| !text.trim().is_empty()) {
+        let fields = Separator::of(text).fields(text, number).unwrap_or_default();
+        let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
+        if number > line && Header::of(&names, choice).is_ok() {
+            return Some(number);
+        }
+        let numbers = names.iter().filter(|name| name.parse::<f64>().is_ok()).count();
+        if 2 * numbers > names.len() || number == line && names.iter().any(|name| is_known(name)) {
+            return None;
+        }
+    }
+    None
 }
 
 pub(super) fn parse(text: &str, format: Format, choice: &ColumnChoice) -> Result<TextFile, Misread> {

@@ -465,9 +465,14 @@ impl TrackColumns {
     /// What else may be done about two rows of a pedestrian in one frame: they may be of several recordings.
     pub(super) fn advice_on_same(&self, rows: [&str; 2]) -> String {
         let [first, again] = rows.map(|row| self.separator.fields(row, 1).unwrap_or_default());
-        let differs = |index: &usize| first.get(*index) != again.get(*index);
-        let apart: Vec<usize> = self.header.unread.iter().copied().filter(differs).collect();
-        let value = apart.first().and_then(|&index| first.get(index));
+        // A number with a fraction is measured.
+        let tells = |index: &usize| match [first.get(*index), again.get(*index)] {
+            [Some(first), Some(again)] => first != again && ![first, again].iter().any(|it| it.contains('.')),
+            _ => false,
+        };
+        let apart: Vec<usize> = self.header.unread.iter().copied().filter(tells).collect();
+        let of_first = apart.first().map(|&index| [&first[index], &again[index]]);
+        let value = of_first.and_then(|values| values.into_iter().find(|value| !value.is_empty()));
         value.map_or_else(String::new, |value| {
             let (names, value) = (self.quoted(apart.iter().copied()), field::quoted(value));
             let (all, name) = (first_of(&names), &names[0]);

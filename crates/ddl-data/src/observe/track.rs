@@ -124,8 +124,8 @@ impl ObservedTrack {
 
     /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. Whether it fits is decided with the
     /// noise `known` before, so that it does not depend on the order of pedestrians; what it shows is added to
-    /// `recording`. Returns the time of a row that is not where the pedestrian was expected, this one or the one before,
-    /// how far off (m) it is, and how it is treated.
+    /// `recording`. Returns the time of a row that is not where the pedestrian was expected (this one or the one
+    /// before), how far off (m) it is, and how it is treated.
     pub(crate) fn push(
         &mut self,
         row: Row,

@@ -123,9 +123,8 @@ class Results:
             if row["scores"].get(score) is None:
                 raise ValueError(f"the rows have no score {score!r}")
             values[conditions["fold"]] = row["scores"][score]
-            rule_of_row = json.dumps(conditions["window_rule"])
             is_part = conditions.get("test_subset") is not None
-            kinds.add((conditions["convention"], rule_of_row, conditions["forecaster"], is_part))
+            kinds.add((conditions["convention"], _words(conditions["window_rule"]), conditions["forecaster"], is_part))
             if len(kinds) > 1:
                 raise ValueError(
                     "rows of several models, conventions, window rules or parts of the test windows match: choose by "

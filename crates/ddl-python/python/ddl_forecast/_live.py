@@ -119,7 +119,7 @@ class Live:
             numbers = np.array([self._number(one) for one in people], dtype=np.int64)
             words = {number: self._words[number] for number in numbers.tolist() if number >= LARGEST}
             parts, misfits, unwritten = self._core.observe(number, unit, numbers, positions, words)
-            misfit = None if not misfits else (self._words.get(misfits[0][0], misfits[0][0]), misfits[0][1])
+            misfit = None if not misfits else (self._words.get(misfits[0][0], misfits[0][0]), *misfits[0][1:])
             self._forget({*people, *(() if parts is None else parts["ids"])})
         self._tell_refusal()
         if unwritten is not None:
@@ -134,10 +134,11 @@ class Live:
                 "metres. Such positions are left out until others agree with them"
             )
         unfamiliar = None if forecast is None else forecast.unfamiliar()
-        for kind, doubt in (("wrong", wrong), ("unfamiliar", unfamiliar)):
+        moment = f"frame {frame}" if time is None else f"time {time}"
+        of_wrong = moment if misfit is None else misfit[2]
+        for kind, moment, doubt in (("wrong", of_wrong, wrong), ("unfamiliar", moment, unfamiliar)):
             if doubt is not None and kind not in self._doubts:
                 self._doubts.add(kind)
-                moment = f"frame {frame}" if time is None else f"time {time}"
                 warnings.warn(f"{moment}: {doubt}; this warning appears once", DoubtWarning, stacklevel=2)
         return forecast
 

@@ -104,7 +104,8 @@ impl PlaceMemory {
         self.memory.recalling(window, self.count)
     }
 
-    /// Observes a frame, in which the tracks of `begun` begin anew, and tests the memory on its window, if there is one.
+    /// Observes a frame, in which the tracks of `begun` begin anew, and tests the memory on its window, if there is
+    /// one.
     ///
     /// # Errors
     /// As [`SceneMemory::observe`]. The state is then unchanged.

@@ -62,7 +62,8 @@ impl TrackFingerprints {
         }
     }
 
-    /// The share of the hashes of recordings, which may be parts of one, that are known, if the model was trained on them.
+    /// The share of the hashes of recordings, which may be parts of one, that are known, if the model was trained on
+    /// them.
     pub(crate) fn known(&self, recordings: &[&Recording]) -> Option<f64> {
         self.known_from(KNOWN, recordings)
     }

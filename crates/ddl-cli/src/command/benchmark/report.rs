@@ -4,7 +4,6 @@ use crate::command::Reporting;
 use crate::command::benchmark::plan::Plan;
 use crate::command::benchmark::profile::Profile;
 use crate::output;
-use crate::progress::ProgressMode;
 use crate::telling::tell;
 use anyhow::Context as _;
 use ddl::Results;
@@ -34,10 +33,10 @@ pub(super) fn write(plan: &Plan, runs: &[PathBuf], out: &Path, reporting: &Repor
     save_summary(summary.as_deref(), &out.join(SUMMARY))?;
     if reporting.telling.json {
         output::print(&(results.report.to_json()? + "\n"))?;
-    } else if reporting.telling.progress != ProgressMode::Json {
+    } else {
         // The main tables: the whole report has more than a thousand lines.
         let text = summary.clone().unwrap_or_else(|| results.report.to_markdown());
-        output::print(&format!("\n{}\n\n", text.trim_end()))?;
+        reporting.telling.print(&format!("\n{}\n\n", text.trim_end()))?;
     }
     let main_tables = summary.map(|_| ("main tables", SUMMARY));
     let others = [

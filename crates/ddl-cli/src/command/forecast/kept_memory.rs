@@ -122,7 +122,7 @@ impl KeptMemory {
         let Some(place) = scenes.forget(scene) else {
             return Ok(());
         };
-        let (segments, is_empty) = (place.memory().segments(), place.memory().last_frame().is_none());
+        let (segments, is_empty) = (place.memory().segments(), place.memory().summary().frames == 0);
         match memory.file.end(place)? {
             _ if memory.is_refusal_told => {}
             Some(why) => tell(format_args!("warning: {why}")),

@@ -3,7 +3,7 @@
 use crate::command::{RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
 use crate::output::{self, shell_word};
-use crate::progress::{Progress, ProgressMode};
+use crate::progress::Progress;
 use ddl::data::{Convention, Dataset, Fold};
 use ddl::{BuiltinModel, Comparison, Ddl, TrainingRequest, TrainingStage, best_epoch};
 use serde_json::json;
@@ -32,9 +32,6 @@ pub(super) fn print(
             "validation": compared.map(facts),
         }));
     }
-    if reporting.telling.progress == ProgressMode::Json {
-        return Ok(());
-    }
     let run = run.display();
     let epochs = match epochs.iter().filter(|epoch| epoch.epoch > 0).count() {
         1 => "1 epoch".to_owned(),
@@ -59,7 +56,8 @@ pub(super) fn print(
     let measured = compared.is_some();
     let compared = compared.map_or_else(String::new, |compared| format!("{}\n", compared_words(compared)));
     let next = next(request, only_goals, measured, &recordings.as_options());
-    output::print(&format!("{run}: {done}\n{compared}next: {next}\n"))
+    let words = format!("{run}: {done}\n{compared}next: {next}\n");
+    reporting.telling.print(&words)
 }
 
 fn next(request: &TrainingRequest, only_goals: bool, measured: bool, data: &str) -> String {
