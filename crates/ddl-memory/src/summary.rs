@@ -38,7 +38,8 @@ impl SceneMemory {
     }
 
     /// The positions (m) of each pedestrian with a segment, one step of 0.4 s apart except where steps were missed or
-    /// forgotten, or the track began anew. Pedestrians that have left come first, in the order in which they left, then those present, by id.
+    /// forgotten, or the track began anew. Pedestrians that have left come first, in the order in which they left, then
+    /// those present, by id.
     pub fn tracks(&self) -> impl Iterator<Item = Vec<Position>> {
         self.held().map(Track::positions)
     }
