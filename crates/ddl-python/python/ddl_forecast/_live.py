@@ -134,9 +134,9 @@ class Live:
                 "metres. Such positions are left out until others agree with them"
             )
         unfamiliar = None if forecast is None else forecast.unfamiliar()
-        moment = f"frame {frame}" if time is None else f"time {time}"
-        of_wrong = moment if misfit is None else misfit[2]
-        for kind, moment, doubt in (("wrong", of_wrong, wrong), ("unfamiliar", moment, unfamiliar)):
+        now = f"frame {frame}" if time is None else f"time {time}"
+        of_wrong = now if misfit is None else misfit[2]
+        for kind, moment, doubt in (("wrong", of_wrong, wrong), ("unfamiliar", now, unfamiliar)):
             if doubt is not None and kind not in self._doubts:
                 self._doubts.add(kind)
                 warnings.warn(f"{moment}: {doubt}; this warning appears once", DoubtWarning, stacklevel=2)
