@@ -120,7 +120,7 @@ fn words_are_returned_as_written() {
 }
 
 #[test]
-fn what_ends_before_the_file_and_what_takes_precedence() {
+fn a_late_row_is_told_and_a_given_rate_takes_precedence() {
     let place = Place::empty();
     let walk = own_tracks::csv(&own_tracks::three_pedestrians(10));
     place.write("late.csv", walk.clone() + "900,77,0,0\n");
@@ -128,7 +128,7 @@ fn what_ends_before_the_file_and_what_takes_precedence() {
         .run("forecast late.csv --frame-step 10 --last --one --threads 1")
         .stderr;
     assert!(
-        told.contains("nobody is forecast at the end, frame 900: the last forecast is made at frame 90"),
+        told.contains("there is no forecast for the last frame of the file (frame 900); the last one is at frame 90"),
         "{told}"
     );
     place.write("fast.csv", "# fps: 1e12\n".to_owned() + &walk);

@@ -360,7 +360,7 @@ impl Window {
     }
 
     /// The window in reversed time: every pedestrian walks its track from the end to the start, at the same frames.
-    /// Remembered tracks, bystanders and qualities are dropped, because they are of the other end.
+    /// Remembered tracks, bystanders and qualities are dropped, because they belong to the end.
     #[must_use]
     pub fn reversed(&self) -> Window {
         let alone = self.clone().with_remembered(|_| Vec::new()).with_bystanders(None);

@@ -149,7 +149,8 @@ impl SceneMemory {
         self.observe_begun(frame, positions, &[])
     }
 
-    /// As [`observe`](Self::observe), where the tracks of `begun` begin anew: their ids were those of others before.
+    /// As [`observe`](Self::observe). The tracks of the pedestrians in `begun` begin anew: no path joins them to earlier
+    /// rows of the same id.
     ///
     /// # Errors
     /// As [`observe`](Self::observe).

@@ -161,8 +161,8 @@ pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
         index,
         role,
         time_unit: of_time.filter(|_| role == Role::Time),
-        // A column called `px` is a coordinate; only a further word, as in `x_px`, is a unit. `x_in` is where somebody
-        // enters, `x [in]` are inches.
+        // A column called `px` is a coordinate; only a further word, as in `x_px`, is a unit. `x_in` may be where
+        // somebody enters; only `x [in]` is in inches.
         length: unit_of(&LENGTH_UNITS, last).filter(|_| {
             let is_unit = last != "in" || name.ends_with([']', ')']);
             is_unit && matches!(role, Role::X | Role::Y) && words.len() > 1

@@ -148,7 +148,7 @@ impl Roles<'_> {
         let mut faults = self.repeated();
         faults.extend(self.not_there(choice));
         faults.extend(self.other_rows());
-        // The unit that is given is that of both.
+        // `--unit` sets the unit of both columns.
         faults.extend(self.mixed_units().filter(|_| choice.unit.is_none()));
         let time = self.of(Role::Time).or(self.of(Role::Frame));
         let parts = time.zip(self.of(Role::Pedestrian)).zip(self.place());
@@ -351,7 +351,7 @@ impl Roles<'_> {
             let [of_x, of_y] = [x, y].map(|named| quoted(self.names[named.index]));
             (
                 Some(y.index),
-                format!("the columns {of_x:?} and {of_y:?} have different units; --unit gives that of both"),
+                format!("the columns {of_x:?} and {of_y:?} have different units; --unit sets one for both"),
             )
         })
     }

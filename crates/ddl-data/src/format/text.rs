@@ -41,7 +41,7 @@ pub(super) fn end_of_lines(text: &str) -> char {
     if text.contains('\n') { '\n' } else { '\r' }
 }
 
-/// The number of a line below this one that names the columns of a table: titles stand above it, no rows.
+/// The number of a line below this one that names the columns of a table, if all lines above it are titles.
 fn header_below(text: &str, line: usize, choice: &ColumnChoice) -> Option<usize> {
     let lines = (1..).zip(text.split(end_of_lines(text))).skip(line - 1);
     for (number, text) in lines.take(MOST_TITLES).filter(|(_, text)| !text.trim().is_empty()) {

@@ -465,7 +465,7 @@ impl TrackColumns {
     /// What else may be done about two rows of a pedestrian in one frame: they may be of several recordings.
     pub(super) fn advice_on_same(&self, rows: [&str; 2]) -> String {
         let [first, again] = rows.map(|row| self.separator.fields(row, 1).unwrap_or_default());
-        // A number with a fraction is measured.
+        // A number with a fraction is a measurement, not the name of a recording.
         let tells = |index: &usize| match [first.get(*index), again.get(*index)] {
             [Some(first), Some(again)] => first != again && ![first, again].iter().any(|it| it.contains('.')),
             _ => false,

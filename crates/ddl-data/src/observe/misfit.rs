@@ -6,7 +6,7 @@ use ddl_core::PedestrianId;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Misfit {
-    /// Tick of the row; of a track that begins anew, of the row that showed it.
+    /// Tick of the wrong row or, where a track begins anew, of the row that confirmed the jump.
     pub tick: i64,
     /// Its pedestrian.
     pub pedestrian: PedestrianId,

@@ -382,7 +382,7 @@ fn told(rate: f64, pedestrians: i64, from: usize, moved: impl Fn(i64, Position) 
     (observed.misfits, observed.windows.pop().unwrap())
 }
 
-/// A row that may be a sudden turn is known to be wrong only by the next one, which counts.
+/// A row that could be a sudden turn is found to be wrong only when the next row comes; that next row is kept.
 #[test]
 fn the_wrong_of_two_rows_is_named() {
     let mut tracks = LiveTracks::new();

@@ -253,7 +253,7 @@ fn long_gaps_begin_another_run() {
     }
 }
 
-/// Nobody walks from one track to another that has its id from then on.
+/// A track that begins anew is not joined to the earlier track of the same id.
 #[test]
 fn tracks_that_begin_anew_are_not_joined() {
     let mut memory = SceneMemory::new(4, 1_000).unwrap();

@@ -62,8 +62,8 @@ impl Watch {
             }
         };
         if let Some(place) = &mut self.place {
-            // A row that is left out is no path of a pedestrian, and nobody walks from one track to another. A row that
-            // only the next one shows to be wrong stays.
+            // Rows that were left out are not stored. A track that begins anew is not joined to the one before. If only
+            // the next row shows that a row is wrong, that row is stored already.
             let rows = pedestrians.into_iter().filter(|(id, _)| !tracks.has_left_out(*id));
             let begun = tracks.misfits().iter();
             let begun = begun.filter(|misfit| misfit.treatment == MisfitTreatment::BegunAnew);

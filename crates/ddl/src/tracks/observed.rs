@@ -140,7 +140,7 @@ impl ObservedTracks {
         let gap = (end - last) as f64 * TIME_STEP / self.recording.frame_step() as f64;
         (gap > LiveTracks::LONGEST_GAP).then(|| {
             let [end, last] = [end, last].map(|tick| self.clock.words(tick));
-            format!("note: nobody is forecast at the end, {end}: the last forecast is made at {last}")
+            format!("note: there is no forecast for the last frame of the file ({end}); the last one is at {last}")
         })
     }
 
