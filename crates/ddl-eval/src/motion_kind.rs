@@ -2,8 +2,6 @@
 //!
 //! They read the future and group results after the forecasts are made; forecasts must not depend on them.
 
-use std::fmt;
-
 use ddl_core::{HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance};
 use serde::{Deserialize, Serialize};
 
@@ -50,17 +48,13 @@ pub enum MotionKind {
     SpeedingUp,
 }
 
-impl MotionKind {
-    /// All kinds, in display order.
-    pub const ALL: [Self; 6] = [
-        Self::Standing,
-        Self::Straight,
-        Self::TurningLeft,
-        Self::TurningRight,
-        Self::SlowingDown,
-        Self::SpeedingUp,
-    ];
+ddl_core::named!(
+    MotionKind, "kind of motion",
+    Standing => "standing", Straight => "straight on", TurningLeft => "turning left", TurningRight => "turning right",
+    SlowingDown => "slowing down", SpeedingUp => "speeding up",
+);
 
+impl MotionKind {
     /// The kind of motion of a track of 20 positions (m, 0.4 s apart); `None` for other tracks and for positions that
     /// are not finite.
     pub fn of(track: &[Position]) -> Option<Self> {
@@ -91,19 +85,6 @@ impl MotionKind {
             Self::SpeedingUp
         } else {
             Self::Straight
-        })
-    }
-}
-
-impl fmt::Display for MotionKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Standing => "standing",
-            Self::Straight => "straight on",
-            Self::TurningLeft => "turning left",
-            Self::TurningRight => "turning right",
-            Self::SlowingDown => "slowing down",
-            Self::SpeedingUp => "speeding up",
         })
     }
 }
