@@ -23,7 +23,8 @@ pub use names::UnknownName;
 pub use pace::{Pace, mean_speed};
 pub use pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 pub use position::{
-    FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, between, distance, is_finite, is_frame, is_frame_step,
+    FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, between, bounds, distance, is_finite, is_frame,
+    is_frame_step,
 };
 pub use quality::ObservationQuality;
 pub use region::AdaptiveRegions;

@@ -35,6 +35,17 @@ pub fn between(from: Position, to: Position, share: f64) -> Position {
     [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
 }
 
+/// Least and largest x and y of positions, `[low, high]`; `None` without positions.
+pub fn bounds(places: impl IntoIterator<Item = Position>) -> Option<[Position; 2]> {
+    places.into_iter().fold(None, |bounds, place| {
+        let [low, high] = bounds.unwrap_or([place; 2]);
+        Some([
+            [0, 1].map(|axis| low[axis].min(place[axis])),
+            [0, 1].map(|axis| high[axis].max(place[axis])),
+        ])
+    })
+}
+
 /// Euclidean distance of two positions (m).
 pub fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])

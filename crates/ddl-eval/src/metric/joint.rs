@@ -14,7 +14,7 @@
 //! counts as 0. Its windows are those of the rule `social-gan-1`. It gives the same numbers for exported
 //! [samples](crate::external::write_samples).
 
-use ddl_core::Position;
+use ddl_core::{Position, bounds};
 use serde::{Deserialize, Serialize};
 
 use crate::metric::collision::{PEDESTRIAN_RADIUS, closest_approach};
@@ -111,20 +111,22 @@ impl SceneFutures {
 ///
 /// Only pairs whose surroundings overlap are compared, found by a sweep along x.
 fn colliding<'a>(n: usize, futures: usize, path: impl Fn(usize, usize) -> &'a [Position]) -> [Vec<usize>; 2] {
-    let boxes: Vec<Vec<Surroundings>> = (0..n)
-        .map(|i| (0..futures).map(|k| Surroundings::of(path(i, k))).collect())
+    // No path is empty.
+    let around = |path: &[Position]| bounds(path.iter().copied()).unwrap_or_default();
+    let boxes: Vec<Vec<[Position; 2]>> = (0..n)
+        .map(|i| (0..futures).map(|k| around(path(i, k))).collect())
         .collect();
-    let whole: Vec<Surroundings> = boxes.iter().map(|boxes| Surroundings::around(boxes)).collect();
+    let whole: Vec<[Position; 2]> = boxes.iter().map(|boxes| around(boxes.as_flattened())).collect();
     let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by(|&a, &b| whole[a].low[0].total_cmp(&whole[b].low[0]));
+    order.sort_by(|&a, &b| whole[a][0][0].total_cmp(&whole[b][0][0]));
     let mut hit = TOO_NEAR.map(|_| vec![false; n * futures]);
     for (at, &i) in order.iter().enumerate() {
         let ahead = order[at + 1..].iter().copied();
-        for j in ahead.take_while(|&j| whole[j].low[0] < whole[i].high[0] + TOO_NEAR[0]) {
-            if whole[i].far_from(whole[j]) {
+        for j in ahead.take_while(|&j| whole[j][0][0] < whole[i][1][0] + TOO_NEAR[0]) {
+            if far_apart(whole[i], whole[j]) {
                 continue;
             }
-            for k in (0..futures).filter(|&k| !boxes[i][k].far_from(boxes[j][k])) {
+            for k in (0..futures).filter(|&k| !far_apart(boxes[i][k], boxes[j][k])) {
                 let apart = closest_approach(path(i, k), path(j, k));
                 for (hit, _) in hit.iter_mut().zip(TOO_NEAR).filter(|(_, near)| apart < *near) {
                     hit[k * n + i] = true;
@@ -137,35 +139,7 @@ fn colliding<'a>(n: usize, futures: usize, path: impl Fn(usize, usize) -> &'a [P
     hit.map(|hit| hit.chunks(n).map(count).collect())
 }
 
-/// The smallest upright rectangle around positions, metres.
-#[derive(Debug, Clone, Copy)]
-struct Surroundings {
-    low: Position,
-    high: Position,
-}
-
-impl Surroundings {
-    fn of(path: &[Position]) -> Self {
-        let points = path.iter().map(|&p| Self { low: p, high: p });
-        Self::around(&points.collect::<Vec<_>>())
-    }
-
-    fn around(parts: &[Self]) -> Self {
-        let nothing = Self {
-            low: [f64::INFINITY; 2],
-            high: [f64::NEG_INFINITY; 2],
-        };
-        parts.iter().fold(nothing, |all, part| Self {
-            low: [0, 1].map(|c| all.low[c].min(part.low[c])),
-            high: [0, 1].map(|c| all.high[c].max(part.high[c])),
-        })
-    }
-
-    /// Whether no two points of them are too near.
-    fn far_from(self, other: Self) -> bool {
-        [0, 1].into_iter().any(|c| {
-            let gap = (self.low[c] - other.high[c]).max(other.low[c] - self.high[c]);
-            gap >= TOO_NEAR[0]
-        })
-    }
+/// Whether no two points within two rectangles, each from its low to its high corner, are too near.
+fn far_apart([low, high]: [Position; 2], [other_low, other_high]: [Position; 2]) -> bool {
+    (0..2).any(|c| (low[c] - other_high[c]).max(other_low[c] - high[c]) >= TOO_NEAR[0])
 }

@@ -1,9 +1,10 @@
 //! The frame of a plot in metres, with its grid and numbers.
 
+use ddl_core::bounds;
 use ddl_data::Position;
 
 use crate::figure::drawing::Drawing;
-use crate::figure::plan::{PlanView, bounds};
+use crate::figure::plan::PlanView;
 use crate::figure::scale::{round_step, ticks};
 
 /// Smallest width of the shown area, metres, for scenes in which all pedestrians stand still.

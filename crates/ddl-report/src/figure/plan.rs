@@ -22,14 +22,3 @@ impl PlanView {
         places.into_iter().map(|place| self.px(*place)).collect()
     }
 }
-
-/// Lower left and upper right corner of the points, metres; `None` without points.
-pub(crate) fn bounds(places: impl IntoIterator<Item = Position>) -> Option<[Position; 2]> {
-    places.into_iter().fold(None, |bounds, place| {
-        let [low, high] = bounds.unwrap_or([place; 2]);
-        Some([
-            [0, 1].map(|axis| low[axis].min(place[axis])),
-            [0, 1].map(|axis| high[axis].max(place[axis])),
-        ])
-    })
-}
