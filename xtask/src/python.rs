@@ -32,11 +32,7 @@ impl Python {
         Ok(python)
     }
 
-    pub(crate) fn call<I>(&self, arguments: I) -> Command
-    where
-        I: IntoIterator,
-        I::Item: AsRef<OsStr>,
-    {
+    pub(crate) fn call(&self, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Command {
         let mut command = Command::new(&self.program);
         command.args(arguments);
         command

@@ -16,49 +16,25 @@ const COMPILER: &str = "/usr/bin/rustc";
 const SOURCES: &str = "/usr/lib/rustlib/src/rust/library/Cargo.lock";
 const PACKAGES: [&str; 2] = ["rustc-web", "rust-web-src"];
 
-/// A target whose standard library is at hand.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct RustTarget {
-    name: &'static str,
-    is_built: bool,
-}
-
-impl RustTarget {
-    /// Installs the standard library if it is missing.
-    pub(crate) fn ensure(workspace: &Workspace, name: &'static str) -> Result<Self> {
-        let rustup = || run(workspace.program("rustup").args(["--quiet", "target", "add", name]));
-        let is_built = find_on_path(OsStr::new("rustup")).is_none() || rustup().is_err();
-        if is_built {
-            eprintln!(
-                "the standard library of {name} is built from Debian's {}",
-                PACKAGES.join(" and ")
-            );
-            debian::ensure_program(SOURCES, &PACKAGES)
-                .with_context(|| format!("the target {name} needs `rustup target add {name}`"))?;
-        }
-        Ok(Self { name, is_built })
+/// Lets a command that calls cargo for the target find its standard library, which is installed if it is missing.
+pub(crate) fn prepare(workspace: &Workspace, target: &str, command: &mut Command) -> Result<()> {
+    let rustup = || run(workspace.program("rustup").args(["--quiet", "target", "add", target]));
+    if find_on_path(OsStr::new("rustup")).is_some() && rustup().is_ok() {
+        return Ok(());
     }
-
-    /// `cargo build --release` for the target.
-    pub(crate) fn build(self, workspace: &Workspace, arguments: &str) -> Result<Command> {
-        let mut cargo = workspace.cargo(["build", "--release", "--target", self.name]);
-        cargo.args(arguments.split(' '));
-        self.prepare(workspace, &mut cargo)?;
-        Ok(cargo)
-    }
-
-    /// Lets a command that calls cargo for the target find the standard library.
-    pub(crate) fn prepare(self, workspace: &Workspace, command: &mut Command) -> Result<()> {
-        if self.is_built {
-            // Debian's compiler is a stable one, which builds a standard library only if it is told to.
-            command
-                .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
-                .env("RUSTC", COMPILER)
-                .env("RUSTC_BOOTSTRAP", "1")
-                .env("PATH", with_linker(workspace)?);
-        }
-        Ok(())
-    }
+    eprintln!(
+        "the standard library of {target} is built from Debian's {}",
+        PACKAGES.join(" and ")
+    );
+    debian::ensure_program(SOURCES, &PACKAGES)
+        .with_context(|| format!("the target {target} needs `rustup target add {target}`"))?;
+    // Debian's compiler is a stable one, which builds a standard library only if it is told to.
+    command
+        .env("CARGO_UNSTABLE_BUILD_STD", "std,panic_abort")
+        .env("RUSTC", COMPILER)
+        .env("RUSTC_BOOTSTRAP", "1")
+        .env("PATH", with_linker(workspace)?);
+    Ok(())
 }
 
 /// The search path with the linker of the other compiler, which Debian's lacks.

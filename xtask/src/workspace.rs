@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::env;
 use std::ffi::{OsStr, OsString};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Once;
@@ -50,11 +51,7 @@ impl Workspace {
     }
 
     /// A cargo command at the workspace root with the environment of a plain `cargo` call.
-    pub(crate) fn cargo<I>(&self, arguments: I) -> Command
-    where
-        I: IntoIterator,
-        I::Item: AsRef<OsStr>,
-    {
+    pub(crate) fn cargo(&self, arguments: impl IntoIterator<Item = impl AsRef<OsStr>>) -> Command {
         let cargo = env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let mut command = self.program(cargo);
         command.args(arguments);
@@ -108,6 +105,14 @@ fn variables_to_remove() -> Vec<OsString> {
     // here see the same environment, and nothing is rebuilt.
     let fixed = HARMFUL.split(' ').chain(["LIBTORCH"]).map(OsString::from);
     fixed.chain(leaking).collect()
+}
+
+/// Removes a folder with what is in it, if it is there.
+pub(crate) fn remove_folder(folder: &Path) -> Result<()> {
+    if folder.exists() {
+        fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
+    }
+    Ok(())
 }
 
 /// An absolute path is returned unchanged; a relative one is resolved in the folder where the command was started.

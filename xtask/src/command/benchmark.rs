@@ -1,6 +1,5 @@
 //! `cargo xtask benchmark`: libtorch, the recordings and the program, then `ddl benchmark`.
 
-use std::fs;
 use std::os::unix::process::CommandExt as _;
 
 use anyhow::{Context, Result};
@@ -9,7 +8,7 @@ use clap::Args;
 use super::set_up;
 use crate::process::run;
 use crate::recordings::bring_in_for;
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, remove_folder};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -43,10 +42,7 @@ fn value<'a>(options: &'a [String], name: &str) -> Option<&'a str> {
 /// The benchmark as `ci` runs it: small, under every protocol, in a separate folder, from the start, with the program
 /// that `ci` has built.
 pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
-    let out = workspace.path("target/ci-benchmark");
-    if out.exists() {
-        fs::remove_dir_all(&out).with_context(|| format!("{} cannot be deleted", out.display()))?;
-    }
+    remove_folder(&workspace.path("target/ci-benchmark"))?;
     let options = "benchmark --profile smoke --protocol published,fair,single --out target/ci-benchmark";
     run(workspace
         .program(workspace.path("target/debug/ddl"))

@@ -35,7 +35,7 @@ const CHECKS: [Check; 11] = [
     ("Python package", python::check),
     ("library for C and C++", c::check),
     // The tests are last, so that their results are at the end of the log.
-    ("tests", test::run_all),
+    ("tests", |workspace| test::Arguments::default().run(workspace)),
 ];
 
 pub(super) fn run(workspace: &Workspace) -> Result<()> {

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, ensure};
 use crate::cache::write_file;
 use crate::process::{run as run_command, shown};
 use crate::tools::Tools;
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, remove_folder};
 
 const BOOK: &str = "docs";
 pub(super) const SITE: &str = "target/site";
@@ -28,11 +28,8 @@ pub(super) fn print(workspace: &Workspace) -> Result<()> {
 /// twice.
 pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
     let (site, made) = (workspace.path(SITE), workspace.path("target/doc"));
-    for folder in [&site, &made] {
-        if folder.exists() {
-            fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
-        }
-    }
+    remove_folder(&site)?;
+    remove_folder(&made)?;
     // rustdoc links to an item of another crate only if that crate's folder exists.
     for folder in fs::read_dir(workspace.path("crates"))?.flatten() {
         fs::create_dir_all(made.join(module(&folder.file_name().display().to_string())))?;

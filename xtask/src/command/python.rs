@@ -11,7 +11,7 @@ use clap::Args;
 use crate::debian;
 use crate::process::{read, run};
 use crate::python::Python;
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, remove_folder};
 
 /// Pinned packages of the test environment, besides the wheel.
 const REQUIREMENTS: &str = "crates/ddl-python/tests/requirements.txt";
@@ -111,9 +111,7 @@ fn make_environment(workspace: &Workspace) -> Result<()> {
 
 fn build(workspace: &Workspace) -> Result<PathBuf> {
     let wheels = workspace.path(WHEELS);
-    if wheels.exists() {
-        fs::remove_dir_all(&wheels).with_context(|| format!("{} cannot be removed", wheels.display()))?;
-    }
+    remove_folder(&wheels)?;
     let mut maturin = in_environment(workspace, "maturin");
     maturin.args("build --quiet --profile wheel --manifest-path crates/ddl-python/Cargo.toml --out".split(' '));
     let interpreter = workspace.path(ENVIRONMENT).join("bin/python");

@@ -12,9 +12,9 @@ use super::{c, set_up, web};
 use crate::cache::{self, sha256};
 use crate::debian;
 use crate::process::{read, run};
-use crate::rust_target::RustTarget;
+use crate::rust_target;
 use crate::tools::{Tools, cargo_tool};
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, remove_folder};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The folder of the files of a release.
@@ -53,9 +53,7 @@ impl Arguments {
             "a release is a commit, but files have changed:\n{status}"
         );
         let files = workspace.path(FILES);
-        if files.exists() {
-            fs::remove_dir_all(&files).with_context(|| format!("{} cannot be removed", files.display()))?;
-        }
+        remove_folder(&files)?;
         fs::create_dir_all(&files)?;
         fs::write(files.join("notes.md"), notes)?;
         for (name, step) in STEPS {
@@ -117,9 +115,9 @@ fn wheels(workspace: &Workspace, files: &Path) -> Result<()> {
 
 /// Lets a command that calls cargo find the target's standard library; this machine's own is there. The flags replace
 /// the configured ones, which name the folder of libtorch on this machine.
-fn with_target(workspace: &Workspace, command: &mut Command, target: &'static str) -> Result<()> {
+fn with_target(workspace: &Workspace, command: &mut Command, target: &str) -> Result<()> {
     if target != OWN {
-        RustTarget::ensure(workspace, target)?.prepare(workspace, command)?;
+        rust_target::prepare(workspace, target, command)?;
     }
     command.env(
         "RUSTFLAGS",

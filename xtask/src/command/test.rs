@@ -17,7 +17,7 @@ const PLAIN: &str = "--workspace --lib --bins --examples --tests";
 const TORCH: &str = "--workspace --features ddl-cli/torch,ddl-tests/torch";
 const TORCH_TESTS: &str = "--test it_torch";
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct Arguments {
     /// Only tests that need no libtorch; nothing is set up
     #[arg(long)]
@@ -42,15 +42,6 @@ impl Arguments {
         build(workspace)?;
         cargo(workspace, "test", "--workspace --tests", &self.rest)
     }
-}
-
-/// All tests: the last step of `ci`.
-pub(super) fn run_all(workspace: &Workspace) -> Result<()> {
-    let arguments = Arguments {
-        no_torch: false,
-        rest: Vec::new(),
-    };
-    arguments.run(workspace)
 }
 
 /// Everything without libtorch: the tests, `target/debug/ddl`, the examples, the library of the Python package.

@@ -9,13 +9,14 @@ use clap::Args;
 use crate::browser;
 use crate::debian;
 use crate::process::run;
-use crate::rust_target::RustTarget;
+use crate::rust_target;
 use crate::tools::Tools;
-use crate::workspace::Workspace;
+use crate::workspace::{Workspace, remove_folder};
 
 /// The folder of page and package.
 const MADE: &str = "target/web";
 pub(super) const PACKAGE: &str = "target/web/npm";
+const TARGET: &str = "wasm32-unknown-unknown";
 /// What cargo makes, in a folder of its own, because the compiler may be another one.
 const BUILT: &str = "target/wasm";
 /// What the test of the example installs.
@@ -39,15 +40,17 @@ impl Arguments {
 }
 
 pub(super) fn build(workspace: &Workspace) -> Result<()> {
-    let target = RustTarget::ensure(workspace, "wasm32-unknown-unknown")?;
-    let mut cargo = target.build(workspace, &format!("--quiet -p ddl-web --target-dir {BUILT}"))?;
+    let options = format!("build --release --quiet -p ddl-web --target-dir {BUILT} --target {TARGET}");
+    let mut cargo = workspace.cargo(options.split(' '));
+    rust_target::prepare(workspace, TARGET, &mut cargo)?;
     // The kernels compute with vectors of 128 bits, which every browser since 2023 has.
     run(cargo.env("RUSTFLAGS", "-C target-feature=+simd128"))?;
     let package = workspace.path(PACKAGE);
-    let module = "wasm32-unknown-unknown/release/ddl_forecast.wasm";
     let bindgen = "run --quiet --package xtask --features bindgen --bin bindgen --target-dir target/xtask --";
     let mut bindgen = workspace.cargo(bindgen.split(' '));
-    bindgen.arg(workspace.path(BUILT).join(module)).arg(&package);
+    bindgen
+        .arg(workspace.path(BUILT).join(TARGET).join("release/ddl_forecast.wasm"))
+        .arg(&package);
     run(bindgen.arg(workspace.path(BUILT).join("page")))?;
     let sources = [
         "crates/ddl-web/npm/node.js",
@@ -72,10 +75,8 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
     debian::ensure_program("npm", &["npm"])?;
     // The example, as somebody else's program.
     let user = made.join("user");
-    if user.exists() {
-        // npm would keep an older package of the same version.
-        fs::remove_dir_all(&user)?;
-    }
+    // npm would keep an older package of the same version.
+    remove_folder(&user)?;
     fs::create_dir_all(&user)?;
     for entry in fs::read_dir(workspace.path("crates/ddl-web/examples"))?.flatten() {
         fs::copy(entry.path(), user.join(entry.file_name()))?;
