@@ -54,6 +54,18 @@ impl EvaluationError {
         }
     }
 
+    /// Checks that a forecast, or what else is known of a window, has as many pedestrians.
+    ///
+    /// # Errors
+    /// [`WindowProblem::Pedestrians`].
+    pub fn unless_same_pedestrians(window: &Window, found: usize) -> Result<(), Self> {
+        let expected = window.len();
+        if expected == found {
+            return Ok(());
+        }
+        Err(Self::of(window, WindowProblem::Pedestrians { expected, found }))
+    }
+
     /// Checks that there is one forecast for each window.
     pub(crate) fn unless_one_each(windows: &[Window], forecasts: usize) -> Result<(), Self> {
         let windows = windows.len();

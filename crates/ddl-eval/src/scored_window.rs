@@ -21,11 +21,7 @@ impl<'a> ScoredWindow<'a> {
         if !window.has_future() {
             return Err(EvaluationError::of(window, WindowProblem::NoFuture));
         }
-        let (expected, found) = (window.len(), forecast.pedestrians());
-        if expected != found {
-            let problem = WindowProblem::Pedestrians { expected, found };
-            return Err(EvaluationError::of(window, problem));
-        }
+        EvaluationError::unless_same_pedestrians(window, forecast.pedestrians())?;
         Ok(Self {
             window,
             forecast,

@@ -3,7 +3,7 @@
 use ddl_core::{Forecast, average_displacement, medoid};
 use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position, Window};
 use ddl_eval::metric::stability::RolloutStability;
-use ddl_eval::{EvaluationError, ScoredWindow, WindowProblem};
+use ddl_eval::{EvaluationError, ScoredWindow};
 use serde::{Deserialize, Serialize};
 
 /// Steps in a metre, or in a weight of 1, to which numbers are rounded.
@@ -122,13 +122,7 @@ impl ForecastSnapshot {
         seen: &[Vec<Position>],
     ) -> Result<Self, EvaluationError> {
         for found in [forecast.pedestrians(), seen.len()] {
-            if found != window.len() {
-                let problem = WindowProblem::Pedestrians {
-                    expected: window.len(),
-                    found,
-                };
-                return Err(EvaluationError::of(window, problem));
-            }
+            EvaluationError::unless_same_pedestrians(window, found)?;
         }
         let seen: Vec<&[Position]> = seen.iter().map(Vec::as_slice).collect();
         let longest = seen.iter().map(|path| path.len()).max().unwrap_or_default();

@@ -21,7 +21,7 @@ use std::path::{Component, Path, PathBuf};
 use ddl_core::{Forecast, HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_data::{Convention, write_atomically};
 
-use crate::error::{EvaluationError, WindowProblem};
+use crate::error::EvaluationError;
 use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
 use crate::external::lines::{Lines, Wrong, in_field, whole_line, within_bounds, wrong, wrong_length};
@@ -43,11 +43,7 @@ pub fn write_samples(windows: &[Window], forecasts: &[Forecast], folder: &Path) 
         return Err(in_folder(folder, "is not empty; give a new folder"));
     }
     for (window, forecast) in windows.iter().zip(forecasts) {
-        let (expected, found) = (window.len(), forecast.pedestrians());
-        if expected != found {
-            let problem = WindowProblem::Pedestrians { expected, found };
-            return Err(EvaluationError::of(window, problem).into());
-        }
+        EvaluationError::unless_same_pedestrians(window, forecast.pedestrians())?;
         let name = window.recording();
         if !Path::new(name).components().eq([Component::Normal(name.as_ref())]) {
             return Err(in_folder(

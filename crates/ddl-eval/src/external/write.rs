@@ -5,7 +5,7 @@ use std::io::Write;
 use ddl_core::{Forecast, PedestrianName, Position, Window};
 use serde::Serialize;
 
-use crate::error::{EvaluationError, WindowProblem};
+use crate::error::EvaluationError;
 use crate::external::error::ExternalError;
 use crate::external::pedestrian_key::last_observed;
 
@@ -69,11 +69,7 @@ pub fn write_forecasts(
 ) -> Result<(), ExternalError> {
     EvaluationError::unless_one_each(windows, forecasts.len())?;
     for (window, forecast) in windows.iter().zip(forecasts) {
-        let (expected, found) = (window.len(), forecast.pedestrians());
-        if expected != found {
-            let problem = WindowProblem::Pedestrians { expected, found };
-            return Err(EvaluationError::of(window, problem).into());
-        }
+        EvaluationError::unless_same_pedestrians(window, forecast.pedestrians())?;
         for i in 0..window.len() {
             let hypotheses = (0..forecast.hypotheses())
                 .map(|k| WrittenHypothesis {
