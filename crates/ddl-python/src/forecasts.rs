@@ -135,6 +135,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
     };
     let unseen = qualities().map(|quality| quality.map_or(0, |quality| quality.unseen as i64));
     let age = qualities().map(|quality| quality.map_or(f64::NAN, |quality| quality.age));
+    let deviation = qualities().map(|quality| quality.map_or(f64::NAN, |quality| quality.deviation));
     let uncertainty = qualities().map(|quality| quality.map_or(f64::NAN, ObservationQuality::uncertainty));
     let past = rows.iter().flat_map(|row| match window.zip(*row) {
         Some((window, i)) => window.observed(i).to_vec(),
@@ -144,6 +145,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
     dict.set_item("past", past)?;
     dict.set_item("unseen", array(py, unseen.collect(), [n])?)?;
     dict.set_item("age", array(py, age.collect(), [n])?)?;
+    dict.set_item("deviation", array(py, deviation.collect(), [n])?)?;
     dict.set_item("uncertainty", array(py, uncertainty.collect(), [n])?)
 }
 

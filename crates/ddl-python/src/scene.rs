@@ -3,16 +3,17 @@
 use crate::arrays::{Paths, array, flat, forecast, tracks};
 use crate::errors::of_any;
 use crate::interruptible::run;
-use ddl::data::{HORIZON, OBSERVED, PedestrianId, TIME_STEP, Window};
+use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, TIME_STEP, Window};
 use ddl::scene::{Area, Futures, Occupancy, Plan, PlanPoint};
 use ddl::{Pace, Spread};
-use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Observed positions, paths, weights and spread of a joint forecast.
+/// Observed positions and the deviations of the last, paths, weights and spread of a joint forecast.
 type JointArrays<'py> = (
     PyReadonlyArray3<'py, f64>,
+    PyReadonlyArray1<'py, f64>,
     Paths<'py>,
     PyReadonlyArray2<'py, f64>,
     PyReadonlyArray2<'py, f64>,
@@ -36,11 +37,18 @@ pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
     Plan::new(points.map(point).collect()).map_err(of_any)
 }
 
-fn futures((past, paths, weights, spread): &JointArrays<'_>) -> PyResult<Futures> {
+fn futures((past, deviations, paths, weights, spread): &JointArrays<'_>) -> PyResult<Futures> {
     let observed = tracks("past", past, OBSERVED, false)?;
     let ids = (0..observed.len() as i64).map(PedestrianId).collect();
     let paces = observed.iter().map(|track| Pace::of(track, TIME_STEP, 0.0)).collect();
-    let window = Window::new("arrays", 0, 1, ids, observed).map_err(of_any)?;
+    let quality = |&deviation: &f64| ObservationQuality {
+        deviation,
+        ..ObservationQuality::default()
+    };
+    let qualities = flat("deviation", deviations)?.iter().map(quality).collect();
+    let window = Window::new("arrays", 0, 1, ids, observed)
+        .map_err(of_any)?
+        .with_qualities(qualities);
     let spread = Spread {
         scales: flat("spread", spread)?.to_vec(),
         paces,

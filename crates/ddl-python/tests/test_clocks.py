@@ -43,7 +43,7 @@ def assert_same_bits(ours, theirs):
     assert len(ours) == len(theirs)
     for one, other in zip(ours, theirs, strict=True):
         assert one.frame == other.frame and np.array_equal(one.ids, other.ids)
-        for name in ("paths", "goals", "past", "unseen", "age", "uncertainty"):
+        for name in ("paths", "goals", "past", "unseen", "age", "deviation", "uncertainty"):
             assert np.array_equal(getattr(one, name), getattr(other, name)), name
         # Weights adapt when forecasts have ended; the likeliest stays the likeliest.
         assert np.allclose(one.weights, other.weights, atol=0.05), "weights"

@@ -13,6 +13,8 @@ const EQUAL_WEIGHTS: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Futures {
     present: Vec<Position>,
+    /// `[N]`: the scale at the moment itself, metres.
+    deviations: Vec<f64>,
     groups: Vec<Vec<usize>>,
     forecast: Forecast,
 }
@@ -43,8 +45,10 @@ impl Futures {
             }
         }
         let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
+        let deviations = (0..window.len()).map(|i| window.quality(i).deviation).collect();
         Ok(Self {
             present,
+            deviations,
             groups: groups(window),
             forecast,
         })
@@ -89,18 +93,21 @@ impl Futures {
         between(from, path[step.min(HORIZON - 1)], share)
     }
 
-    /// The scale (m) of the Student's t around that position; 0 at the moment itself. `None` without a spread.
+    /// The scale (m) of the Student's t around that position; at the moment itself the deviation of the last observed
+    /// position, 0 for one that is a row. `None` without a spread.
     pub fn scale(&self, i: usize, time: f64) -> Option<f64> {
         let (step, share) = step_of(time);
-        let at = |step: usize| {
-            if step == 0 {
-                Some(0.0)
-            } else {
-                self.forecast.scale(i, step - 1)
-            }
-        };
-        let [from, to] = [at(step)?, at((step + 1).min(HORIZON))?];
+        let [from, to] = [step, (step + 1).min(HORIZON)].map(|step| self.scale_at(i, step));
+        let (from, to) = from.zip(to)?;
         Some(from + share * (to - from))
+    }
+
+    /// The [scale](Self::scale) at a step, 0 to 12.
+    pub(crate) fn scale_at(&self, i: usize, step: usize) -> Option<f64> {
+        match step {
+            0 => Some(self.deviations[i]),
+            _ => self.forecast.scale(i, step - 1),
+        }
     }
 }
 

@@ -125,7 +125,9 @@ impl Occupancy {
             "a number of at least 0.01 s",
         )?;
         let last = (LAST / step + ROUNDING) as usize;
-        Ok((0..=last).map(|index| index as f64 * step).collect())
+        // Without the rounding error of the product: 0.3, not 0.30000000000000004.
+        let time = |index| (index as f64 * step * 1e9).round() / 1e9;
+        Ok((0..=last).map(time).collect())
     }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! In future k, of the weight `w_k`, pedestrian i is at `path_ik(t) + s_i(t) z_i`: the deviation `z_i` from its path is
 //! distributed by Student's t ([`Spread`](ddl_core::Spread)), lasts for the whole future, grows with the scale `s_i(t)`
-//! and is independent of those of other pedestrians. The scale is 0 at the moment itself; between the steps and the
-//! rows of the plan everything moves on straight lines. With the share `P_ik` of deviations that come close,
+//! and is independent of those of other pedestrians. At the moment itself the scale is the deviation of the last observed
+//! position, 0 for a row; between the steps and the rows of the plan everything moves on straight lines. With the share `P_ik` of deviations that come close,
 //!
 //! ```text
 //! P(somebody) = sum_k w_k (1 - prod_i (1 - P_ik)),    P(pedestrian i) = sum_k w_k P_ik
@@ -39,7 +39,7 @@ pub struct Risk {
     pub until: [f64; HORIZON],
 }
 
-/// Expected least distance (m) of pedestrians from the edge of a plan, over 4.8 s; 0 where they touch.
+/// Expected least distance (m) of pedestrians, who do not see a plan, from its edge, over 4.8 s; 0 where they touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clearance {
     /// Of the pedestrian that comes nearest.
@@ -58,33 +58,37 @@ impl Futures {
     /// # Errors
     /// `within` is negative or not finite; the forecast has no spread.
     pub fn risks(&self, plans: &[Plan], within: f64, ego: Option<usize>) -> Result<Vec<Risk>, SceneError> {
-        let odds = vec![1.0; self.pedestrians()];
-        self.risks_with(plans, within, &odds, ego)
+        self.risks_with(plans, within, |_| vec![1.0; self.pedestrians()], ego)
     }
 
     /// [`risks`](Self::risks), where pedestrians see the plan and keep away from it as people do from each other.
     ///
     /// The odds that somebody comes close are divided by a factor learned from recordings in which a pedestrian plays
-    /// the robot: a large one, and a small one for those who walk with the `ego`. Whoever is close already stays as it
-    /// is, and nobody avoids distances of more than 1.5 m.
+    /// the robot: a large one, and a small one for those who walk with the `ego`. It is that of the distance from the
+    /// middle of the plan, `within` and the largest radius. Whoever is close already stays as it is, and nobody avoids
+    /// distances of more than 1.5 m.
     ///
     /// # Errors
     /// As [`risks`](Self::risks).
     pub fn risks_if_seen(&self, plans: &[Plan], within: f64, ego: Option<usize>) -> Result<Vec<Risk>, SceneError> {
-        let [strangers, companions] = Energy::learned().avoidance(within);
-        let mut odds = vec![1.0 / strangers; self.pedestrians()];
         let group = ego.and_then(|ego| self.groups().iter().find(|group| group.contains(&ego)));
-        for &companion in group.into_iter().flatten() {
-            odds[companion] = 1.0 / companions;
-        }
-        self.risks_with(plans, within, &odds, ego)
+        let odds = |plan: &Plan| {
+            let radius = plan.points().iter().map(|point| point.radius).fold(0.0, f64::max);
+            let [strangers, companions] = Energy::learned().avoidance(within + radius);
+            let mut odds = vec![1.0 / strangers; self.pedestrians()];
+            for &companion in group.into_iter().flatten() {
+                odds[companion] = 1.0 / companions;
+            }
+            odds
+        };
+        self.risks_with(plans, within, odds, ego)
     }
 
     fn risks_with(
         &self,
         plans: &[Plan],
         within: f64,
-        odds: &[f64],
+        odds: impl Fn(&Plan) -> Vec<f64> + Sync,
         ego: Option<usize>,
     ) -> Result<Vec<Risk>, SceneError> {
         if !(within >= 0.0 && within.is_finite()) {
@@ -95,12 +99,12 @@ impl Futures {
             });
         }
         let crowd = Crowd::new(self)?;
-        let risk = |plan| self.risk(&crowd, &crowd.sweep(plan, within), odds, ego);
+        let risk = |plan| self.risk(&crowd, &crowd.sweep(plan, within), &odds(plan), ego);
         Ok(plans.par_iter().map(risk).collect())
     }
 
-    /// For each plan, how far from its edge pedestrians are expected to stay. The model is that of the
-    /// [risk](Self::risks). Without its short cuts a plan takes some 10 ms.
+    /// For each plan, how far from its edge pedestrians are expected to stay if nobody sees it. The model is that of
+    /// [`risks`](Self::risks). Without its short cuts a plan takes some 10 ms.
     ///
     /// # Errors
     /// The forecast has no spread.

@@ -45,8 +45,8 @@ __version__: str
 UNFAMILIAR: float
 
 _Path = str | os.PathLike[str]
-# Observed positions, paths, weights and spread.
-_Joint = tuple[Floats, Floats, Floats, Floats]
+# Observed positions and the deviations of the last, paths, weights and spread.
+_Joint = tuple[Floats, ...]
 
 def main(arguments: list[str]) -> int: ...
 def set_num_threads(threads: int) -> None:

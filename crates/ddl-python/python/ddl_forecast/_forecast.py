@@ -62,13 +62,16 @@ class Occupancy:
     #: (2,) the lowest corner of the area, metres.
     origin: Floats
 
-    def message(self, index: int) -> dict[str, Any]:
-        """The grid of a time as an object with the fields of ``nav_msgs/OccupancyGrid``, in percent."""
+    def message(self, index: int, frame_id: str = "map") -> dict[str, Any]:
+        """The grid of a time as an object with the fields of ``nav_msgs/OccupancyGrid``, in percent.
+
+        ``stamp`` is the time in seconds after the moment.
+        """
         grid = self.probabilities[index]
         position = {"x": float(self.origin[0]), "y": float(self.origin[1]), "z": 0.0}
         origin = {"position": position, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}
         info = {"resolution": self.cell, "width": grid.shape[1], "height": grid.shape[0], "origin": origin}
-        header = {"stamp": float(self.times[index]), "frame_id": "map"}
+        header = {"stamp": float(self.times[index]), "frame_id": frame_id}
         return {"header": header, "info": info, "data": np.rint(100 * grid).astype(int).ravel().tolist()}
 
 
@@ -103,6 +106,8 @@ class Forecast:
         How many of them lie before the first row: they continue the motion backwards.
     age : (n,)
         Time since the last row, seconds.
+    deviation : (n,)
+        Standard deviation of the last position, metres; 0 with a row there.
     uncertainty : (n,)
         Standard deviation that the observation adds at the end of the forecast, metres; 0 with a row at every step.
     certificates : Certificates or None
@@ -123,6 +128,7 @@ class Forecast:
     past: Floats
     unseen: Integers
     age: Floats
+    deviation: Floats
     uncertainty: Floats
     certificates: Certificates | None = None
     ids: NDArray[Any] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
@@ -223,7 +229,10 @@ class Forecast:
         return Risk(total, of_each, steps, until)
 
     def nearest(self, plans: Sequence[ArrayLike] | Floats) -> tuple[Floats, Floats]:
-        """Expected least distance (m) of plans from everybody (p,), inf without anybody, and each pedestrian (p, n)."""
+        """Expected least distance (m) of plans from everybody (p,), inf without anybody, and each pedestrian (p, n).
+
+        Of people who do not see the plan, as in ``risk(seen=False)``.
+        """
         joint, rows = self._arrays()
         if not rows.any():
             given = _plans(plans)
@@ -263,14 +272,14 @@ class Forecast:
         if not self.joint:
             raise ValueError("this forecast is of single pedestrians: make it with joint=True")
 
-    def _arrays(self) -> tuple[tuple[Floats, Floats, Floats, Floats], Flags]:
+    def _arrays(self) -> tuple[tuple[Floats, ...], Flags]:
         """The arrays of the valid pedestrians, and which they are."""
         self._ensure_joint()
         if self.spread is None:
             raise ValueError("this forecast has no spread: only the 20 futures of a model have it")
         rows = self.valid
-        parts = [np.ascontiguousarray(each[rows]) for each in (self.past, self.paths, self.weights, self.spread)]
-        return (parts[0], parts[1], parts[2], parts[3]), rows
+        parts = (self.past, self.deviation, self.paths, self.weights, self.spread)
+        return tuple(np.ascontiguousarray(each[rows]) for each in parts), rows
 
     def most_likely(self) -> Floats:
         """(n, 12, 2) the path of the hypothesis with the largest weight, metres."""

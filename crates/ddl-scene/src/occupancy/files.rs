@@ -29,9 +29,9 @@ impl Occupancy {
         )
     }
 
-    /// An object with the fields of the message `nav_msgs/OccupancyGrid`: `data` in percent, rounded. The stamp is the
-    /// time in seconds after the moment.
-    pub fn message(&self) -> Value {
+    /// An object with the fields of the message `nav_msgs/OccupancyGrid`, in this coordinate frame: `data` in percent,
+    /// rounded. The stamp is the time in seconds after the moment.
+    pub fn message(&self, frame_id: &str) -> Value {
         let [width, height] = self.area.size();
         let [x, y] = self.area.origin();
         let percent: Vec<i8> = self.probabilities.iter().map(|p| (100.0 * p).round() as i8).collect();
@@ -40,7 +40,7 @@ impl Occupancy {
             "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
         });
         json!({
-            "header": {"stamp": self.time, "frame_id": "map"},
+            "header": {"stamp": self.time, "frame_id": frame_id},
             "info": {"resolution": self.area.cell(), "width": width, "height": height, "origin": origin},
             "data": percent,
         })

@@ -2,7 +2,7 @@ use super::mass::{MassTable, mass};
 use crate::fixture::futures;
 use crate::risk::probability;
 use crate::{Area, Futures, Occupancy};
-use ddl_core::{Position, distance};
+use ddl_core::{ObservationQuality, PedestrianId, Position, Window, distance};
 use proptest::{collection::vec, prelude::*};
 
 fn grids(futures: &Futures, area: &Area, times: &[f64]) -> Vec<Occupancy> {
@@ -93,11 +93,11 @@ fn files_of_others() {
     let expected = "image: \"a \\\"b\\\".pgm\"\nresolution: 0.25\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
     assert_eq!(grid.yaml("a \"b\".pgm"), expected);
-    let message = grid.message();
+    let message = grid.message("odom");
     assert_eq!(message["data"], serde_json::json!([0, 50, 100, 20, 0, 100]));
     assert_eq!(
-        (&message["info"]["width"], &message["header"]["stamp"]),
-        (&3.into(), &0.4.into())
+        (&message["info"]["width"], &message["header"]),
+        (&3.into(), &serde_json::json!({"stamp": 0.4, "frame_id": "odom"}))
     );
     let head = area.npy_head(7);
     assert_eq!(
@@ -106,6 +106,22 @@ fn files_of_others() {
     );
     assert!(String::from_utf8_lossy(&head).contains("'shape': (7, 2, 3)"));
     assert_eq!(grid.npy_values()[4..8], 0.5_f32.to_le_bytes());
+}
+
+#[test]
+fn who_was_seen_a_while_ago_is_not_certain_now() {
+    let forecast = futures(&[[0.0; 2]], &[vec![[0.0; 2]]], &[1.0], &[0.5])
+        .forecast()
+        .clone();
+    let window = Window::new("yard", 0, 10, vec![PedestrianId(0)], vec![vec![[0.0; 2]; 8]]).unwrap();
+    let quality = ObservationQuality {
+        deviation: 0.4,
+        ..ObservationQuality::default()
+    };
+    let futures = Futures::new(&window.with_qualities(vec![quality]), forecast).unwrap();
+    let area = Area::new([-0.05; 2], [0.05; 2], 0.1).unwrap();
+    let found = f64::from(grids(&futures, &area, &[0.0])[0].probabilities[0]);
+    assert!((found - probability(0.25 / 0.4)).abs() < 1e-3, "{found}");
 }
 
 #[test]

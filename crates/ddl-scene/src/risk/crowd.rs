@@ -69,8 +69,8 @@ impl Crowd {
         let (n, forecast) = (futures.pedestrians(), futures.forecast());
         let scales = (0..n).map(|i| {
             let mut scales = [0.0; HORIZON + 1];
-            for (t, scale) in scales[1..].iter_mut().enumerate() {
-                *scale = forecast.scale(i, t).ok_or(SceneError::NoSpread)?;
+            for (step, scale) in scales.iter_mut().enumerate() {
+                *scale = futures.scale_at(i, step).ok_or(SceneError::NoSpread)?;
             }
             Ok(scales)
         });

@@ -141,6 +141,17 @@ proptest! {
         prop_assert!(close(&reversed.pedestrians, &risk.pedestrians, 1e-12));
     }
 
+    /// Who sees a plan keeps its distance from the middle, however the limit is divided into a radius and a distance.
+    #[test]
+    fn radius_and_distance_are_one((starts, velocities, scales, rows) in scenes(), within in 0.0..0.6f64, r in 0.0..0.6f64) {
+        let crowd = futures(&starts, &velocities, &WEIGHTS, &scales);
+        let of = |radius: f64| plan(&rows.iter().map(|&[t, x, y, _]| [t, x, y, radius]).collect::<Vec<_>>());
+        let plans = [of(r), of(0.0)];
+        let disc = crowd.risks_if_seen(&plans[..1], within, None).unwrap().remove(0);
+        let point = crowd.risks_if_seen(&plans[1..], within + r, None).unwrap().remove(0);
+        prop_assert!(close(&disc.until, &point.until, 0.02), "{disc:?} {point:?}");
+    }
+
     /// After its last row a plan stands: a row that says so changes nothing, and a plan cut short has the same past.
     #[test]
     fn time_of_a_plan((starts, velocities, scales, rows) in scenes(), within in 0.0..1.0f64) {
