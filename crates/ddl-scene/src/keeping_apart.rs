@@ -25,6 +25,8 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
     let means: Vec<Path> = means.collect();
     let mut paths = means.clone();
     let collide = |pair: &Pair, first: &Path, second: &Path| collide(people, pair, first, second);
+    let still = [[0.0; HORIZON + 1]; 2];
+    let touch: Vec<bool> = pairs.iter().map(|pair| collide(pair, &still, &still)).collect();
     let mut partners = None;
     for _ in 0..ROUNDS {
         let mut changed = false;
@@ -33,21 +35,23 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
                 continue;
             }
             let partners = partners.get_or_insert_with(|| neighbours(people.len(), pairs));
-            // Those beyond `most` are not counted: a candidate that collides as often as now is of no use.
+            // Those beyond `most` are not counted: a candidate that collides as often as now is of no use. Nor are those
+            // that touch already, which no path mends.
             let collisions = |i: usize, path: &Path, most: usize| {
-                let with = |&&(pair, other): &&(usize, usize)| {
-                    let pair = &pairs[pair];
-                    if pair.first == i {
-                        collide(pair, path, &paths[other])
+                let with = |&&(index, other): &&(usize, usize)| {
+                    let pair = &pairs[index];
+                    let [first, second] = if pair.first == i {
+                        [path, &paths[other]]
                     } else {
-                        collide(pair, &paths[other], path)
-                    }
+                        [&paths[other], path]
+                    };
+                    !touch[index] && collide(pair, first, second)
                 };
                 partners[i].iter().filter(with).take(most).count()
             };
             let candidates = [pair.first, pair.second].into_iter().flat_map(|i| {
                 let now = collisions(i, &paths[i], usize::MAX);
-                let possible = (0..people[i].count()).filter(move |&h| people[i].weights[h] > 0.0);
+                let possible = (0..people[i].count()).filter(move |&h| now > 0 && people[i].weights[h] > 0.0);
                 possible.map(move |hypothesis| (i, hypothesis, now))
             });
             let costs = candidates.filter_map(|(i, hypothesis, now)| {

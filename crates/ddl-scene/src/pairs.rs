@@ -6,7 +6,8 @@ use ddl_core::{HORIZON, Position, distance};
 use ddl_data::SpatialIndex;
 use std::collections::BTreeSet;
 
-/// Each pedestrian has at most this many partners: the nearest ones. It bounds time and memory in a dense crowd.
+/// Each pedestrian chooses at most this many partners, the nearest ones. It bounds the pairs of a dense crowd, although
+/// one can be chosen by many.
 const MOST_NEIGHBOURS: usize = 16;
 /// A factor is at least this large relative to the largest of its row.
 const LEAST_FACTOR: f32 = 3e-4;

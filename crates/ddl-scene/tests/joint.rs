@@ -194,3 +194,13 @@ fn one_pedestrian_has_its_hypotheses() {
         assert_eq!(path(&forecast, &mixture, 0, k), forecast.hypothesis(0, k));
     }
 }
+
+/// Rows without a position often are at (0, 0): hundreds of people at one place.
+#[test]
+fn many_at_one_place_take_no_minutes() {
+    let people: Vec<Person> = (0..400).map(|i| ([0.0; 2], f64::from(i), 1.0)).collect();
+    let begun = std::time::Instant::now();
+    let (_, mixture) = mixture(&people);
+    assert_eq!(mixture.weights.len(), K);
+    assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
