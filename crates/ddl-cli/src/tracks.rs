@@ -79,7 +79,9 @@ impl TrackOptions {
         }
         let observed = ObservedTracks::new((read.recording, read.clock), tracks, self.last);
         if !observed.has_common_frames && self.every.is_none() && !self.last {
-            tell(format_args!("note: {OWN_CLOCKS} (--every)"));
+            tell(format_args!(
+                "note: {OWN_CLOCKS} (--every; of occupancy --moments-every)"
+            ));
         }
         if let Some(warning) = &observed.warning {
             recordings::warn_of(warning);

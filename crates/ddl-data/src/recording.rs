@@ -210,6 +210,12 @@ impl Recording {
         Self { notes, ..self }
     }
 
+    /// The same recording, whose rows were not in the order of their times: how often these begin again.
+    #[must_use]
+    pub fn with_restarts(self, restarts: usize) -> Self {
+        Self { restarts, ..self }
+    }
+
     pub(crate) fn with_names(self, names: PedestrianNames) -> Self {
         Self { names, ..self }
     }

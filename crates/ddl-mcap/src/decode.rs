@@ -118,6 +118,11 @@ fn of_lines(bytes: &[u8]) -> Result<Option<Decoded>, String> {
     let (Some(frame), None) = (next()?, next()?) else {
         return Err("a message holds the tracks of one moment".to_owned());
     };
+    if let Some(scene) = &frame.scene {
+        return Err(format!(
+            "the track names the scene {scene}; record each scene on a topic of its own, without it"
+        ));
+    }
     let seen = frame.pedestrians.iter().map(|(id, position)| SeenPedestrian {
         name: frame.names.of(*id).to_string(),
         position: Point::from(*position),

@@ -13,7 +13,9 @@ pub enum LogError {
     Write(#[from] mcap::McapError),
     #[error(transparent)]
     Encode(#[from] ddl_ros::RosError),
-    #[error("the moment {microseconds} us is before 0, where the times of MCAP begin")]
+    #[error(
+        "the moment {microseconds} us is before 0, where the times of MCAP begin; count times from 0, or write csv"
+    )]
     Early { microseconds: i64 },
 }
 

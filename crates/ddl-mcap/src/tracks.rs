@@ -5,7 +5,7 @@ use crate::error::LogError;
 use crate::files::files;
 use crate::messages::Messages;
 use ddl_core::{FRAME_LIMIT, PedestrianId};
-use ddl_data::{COORDINATE_LIMIT, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped};
+use ddl_data::{COORDINATE_LIMIT, LiveTracks, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped};
 use mcap::Channel;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -30,6 +30,8 @@ pub struct LoggedTracks {
 pub struct TrackTopic {
     pub(crate) files: Vec<PathBuf>,
     pub(crate) name: String,
+    /// The coordinate frame of the positions; `None` if the messages name none.
+    pub frame_id: Option<String>,
 }
 
 /// Reads the tracks of an MCAP file, or of the folder of a rosbag2 recording: those of the topic that is `asked` for
@@ -80,12 +82,13 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
         return Err(LogError::at(path.display())(problem));
     }
     notes.insert(0, words);
+    let frame_id = topic.frame_id.clone().filter(|frame_id| !frame_id.is_empty());
     let recording = topic
         .recording()
         .map_err(LogError::at(format!("{}, topic {name}", path.display())))?;
     Ok(LoggedTracks {
         recording: recording.with_notes(notes.iter().map(|note| escaped(note)).collect()),
-        topic: TrackTopic { files, name },
+        topic: TrackTopic { files, name, frame_id },
     })
 }
 
@@ -119,6 +122,8 @@ struct Topic {
     kind: String,
     messages: u64,
     rows: Vec<Observation>,
+    /// How often the times go back by more than a gap in a track.
+    restarts: usize,
     numbering: Option<Numbering>,
     words: BTreeMap<PedestrianId, Arc<str>>,
     frame_id: Option<String>,
@@ -188,6 +193,9 @@ impl Topic {
             }
             is_kept
         });
+        let time = time.unwrap_or((log_time / 1000) as i64);
+        let last = self.rows.last().map_or(time, |row| row.frame);
+        self.restarts += usize::from(last.saturating_sub(time) as f64 / 1e6 > LiveTracks::LONGEST_GAP);
         let (seen, names) = observed.numbered(self.numbering.get_or_insert_with(|| Numbering::remembering(usize::MAX)));
         for (id, position) in seen {
             let name = names.of(id).to_string();
@@ -197,8 +205,7 @@ impl Topic {
             if id.0 >= FRAME_LIMIT {
                 self.words.entry(id).or_insert_with(|| name.into());
             }
-            self.rows
-                .push(Observation::new(time.unwrap_or((log_time / 1000) as i64), id, position));
+            self.rows.push(Observation::new(time, id, position));
         }
         Ok(())
     }
@@ -217,6 +224,7 @@ impl Topic {
         });
         Ok(recording?
             .with_words(self.words)
+            .with_restarts(self.restarts)
             .with_time_unit(Some(TimeUnit::Seconds)))
     }
 }

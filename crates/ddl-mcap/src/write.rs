@@ -36,7 +36,7 @@ impl<W: Write> ForecastLog<W> {
         let options = WriteOptions::new().profile("ros2").disable_seeking(true);
         let mut log = Self {
             writer: options.create(NoSeek::new(to))?,
-            frame_id: None,
+            frame_id: tracks.and_then(|tracks| tracks.frame_id.clone()),
         };
         for file in tracks.iter().flat_map(|tracks| &tracks.files) {
             let place = || LogError::at(file.display());
@@ -44,7 +44,7 @@ impl<W: Write> ForecastLog<W> {
             while let Some(message) = messages.next().map_err(place())? {
                 let channel = &message.channel;
                 if tracks.is_some_and(|tracks| tracks.name == channel.topic)
-                    && let Some((time, observed)) = decode(&message).map_err(place())?
+                    && let Some((time, _)) = decode(&message).map_err(place())?
                 {
                     let schema = channel.schema.as_ref();
                     let schema =
@@ -60,9 +60,6 @@ impl<W: Write> ForecastLog<W> {
                         publish_time: message.publish_time,
                     };
                     log.writer.write_to_known_channel(&header, &message.data)?;
-                    if !observed.header.frame_id.is_empty() {
-                        log.frame_id = Some(observed.header.frame_id);
-                    }
                 }
             }
         }

@@ -227,6 +227,23 @@ def test_whole_numbers_of_json_have_any_type(program, tmp_path):
     assert "24 rows left out: class 7; no row is left" in none
 
 
+def test_two_recordings_in_one_log_are_told(program, tmp_path):
+    def line(scene):
+        return lambda k, *_: {"track": {"t": 0.4 * (k % 12), "p": k // 12, "x": 0.5 * (k % 12), "y": 2} | scene}
+
+    json_log(tmp_path / "log.mcap", "", line({}))
+    done = run(program, "forecast", tmp_path / "log.mcap", "--last", check=True)
+    assert "begin again in the file (1 x)" in done.stderr
+    json_log(tmp_path / "log.mcap", "", line({"scene": "hall"}))
+    refused = run(program, "forecast", tmp_path / "log.mcap")
+    assert refused.returncode == 1 and "names the scene hall; record each scene on a topic of its own" in refused.stderr
+
+
+def test_grids_have_the_frame_of_the_log(program, folder):
+    done = run(program, "occupancy", folder / "NONE.mcap", "--last", "--cell", "0.5", check=True)
+    assert {json.loads(line)["header"]["frame_id"] for line in done.stdout.splitlines()} == {"odom"}
+
+
 def test_a_csv_is_written_as_mcap_too(program, folder):
     out = folder / "of_csv.mcap"
     run(program, "forecast", folder / "tracks.csv", "--last", "--joint", "-o", out, check=True)

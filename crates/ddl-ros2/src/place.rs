@@ -105,6 +105,8 @@ impl Place {
             self.names = names;
             return Ok(Some((header, None)));
         };
+        // Futures have the random numbers of the names.
+        let window = window.with_names(self.names.clone());
         let forecast = if self.joint {
             let windows = std::slice::from_ref(&window);
             self.model.forecast_scenes(windows, None)?.remove(0)
@@ -113,7 +115,6 @@ impl Place {
         };
         let is_kept = |id| window.pedestrians().contains(&id);
         self.names = self.names.updated(&PedestrianNames::default(), is_kept);
-        let window = window.with_names(self.names.clone());
         Ok(Some((header, Some((window, forecast)))))
     }
 

@@ -148,7 +148,7 @@ impl Answer for OccupancyCommand {
                 continue;
             }
             for grid in grids {
-                let mut message = grid.message();
+                let mut message = grid.message(state.frame_id.as_deref().unwrap_or("map"));
                 if let Value::Object(fields) = &mut message {
                     fields.insert("observed_until".to_owned(), serde_json::to_value(moment_number)?);
                     if let Some(scene) = moment.scene {

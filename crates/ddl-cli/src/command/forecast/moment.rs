@@ -54,6 +54,8 @@ impl<'a> SceneWindows<'a> {
 pub(crate) struct StreamState {
     pub(crate) headed: bool,
     pub(crate) unfamiliar: UnfamiliarMotions,
+    /// The coordinate frame that the tracks name.
+    pub(crate) frame_id: Option<String>,
     told: BTreeSet<&'static str>,
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }

@@ -143,6 +143,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     let model = stream.load()?;
     let (observed, topic) = stream.tracks.observed(model.config())?;
     let mut state = StreamState::default();
+    state.frame_id = topic.as_ref().and_then(|topic| topic.frame_id.clone());
     let (mut lines, mut bytes) = (0, 0);
     let interrupt = Interrupt::catch()?;
     let parts = parts_of(&observed.windows).map(|windows| {

@@ -34,7 +34,7 @@ impl StreamState {
                 "clocks",
                 format_args!(
                     "note: each pedestrian has a clock of its own, and all are forecast from every row; --every 0.4 \
-                     makes a forecast every 0.4 s, as of a file"
+                     (of occupancy --moments-every) makes a forecast every 0.4 s, as of a file"
                 ),
             );
         }
