@@ -31,10 +31,13 @@ fn python_forecasts(place: &Place) -> bool {
     }
 }
 
-fn row<'a>(report: &'a Report, protocol: &str, forecaster: &str) -> &'a ResultRow {
+/// The one row of a forecaster under a protocol.
+pub(crate) fn row<'a>(report: &'a Report, protocol: &str, forecaster: &str) -> &'a ResultRow {
     let is_row =
         |row: &&ResultRow| row.conditions.protocol.name() == protocol && row.conditions.forecaster == forecaster;
-    report.rows().iter().find(is_row).unwrap()
+    let rows: Vec<&ResultRow> = report.rows().iter().filter(is_row).collect();
+    assert_eq!(rows.len(), 1, "rows of {forecaster}");
+    rows[0]
 }
 
 fn report(place: &Place, folder: &str, name: &str) -> Report {

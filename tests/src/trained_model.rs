@@ -1,10 +1,11 @@
 //! Training of the networks of the [drawn model](crate::drawn_model) in this process, for a few seconds.
 
 use crate::folder_contents::{self, Contents};
-use crate::place::Place;
+use crate::place::{Place, json};
 use crate::{crowd, drawn_model};
 use ddl::network::TrainingConfig;
 use ddl::{DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStep, Variant};
+use serde_json::Value;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, Once, OnceLock};
@@ -43,17 +44,28 @@ pub fn result(run: &Path) -> Contents {
     let mut files = folder_contents::read(run);
     let metrics = files.remove(&PathBuf::from("metrics.jsonl")).flatten();
     let metrics = String::from_utf8(metrics.expect("there are metrics")).expect("JSON is text");
-    let epochs: Vec<_> = metrics.lines().map(losses).collect();
+    let epochs: Vec<_> = metrics.lines().map(without_seconds).collect();
     files.insert(PathBuf::from("losses"), Some(epochs.concat().into_bytes()));
     files.remove(&PathBuf::from("optimizer.safetensors"));
     files
 }
 
-fn losses(line: &str) -> String {
-    let mut epoch: serde_json::Value = serde_json::from_str(line).expect("a line is JSON");
-    let fields = epoch.as_object_mut().expect("a line is an object");
-    fields.remove("seconds").expect("an epoch takes seconds");
-    epoch.to_string()
+/// JSON without its durations, which vary.
+pub fn without_seconds(text: &str) -> String {
+    let mut value = json(text);
+    forget_seconds(&mut value);
+    value.to_string()
+}
+
+fn forget_seconds(value: &mut Value) {
+    match value {
+        Value::Object(fields) => {
+            fields.retain(|name, _| !name.contains("seconds"));
+            fields.values_mut().for_each(forget_seconds);
+        }
+        Value::Array(items) => items.iter_mut().for_each(forget_seconds),
+        _ => {}
+    }
 }
 
 /// Uses one thread for tensors in this process, because tests run in parallel already and the order of sums must be

@@ -3,8 +3,8 @@
 use ddl_tests::chance::Chance;
 use ddl_tests::folder_contents::{self, Contents, assert_same, half_written};
 use ddl_tests::place::Place;
+use ddl_tests::trained_model::without_seconds;
 use ddl_tests::{nightly, processes, program};
-use serde_json::Value;
 use std::os::unix::process::ExitStatusExt as _;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -35,17 +35,6 @@ fn kill_all(child: &mut Child) {
     child.wait().unwrap();
 }
 
-fn forget_seconds(value: &mut Value) {
-    match value {
-        Value::Object(fields) => {
-            fields.retain(|name, _| !name.contains("seconds"));
-            fields.values_mut().for_each(forget_seconds);
-        }
-        Value::Array(items) => items.iter_mut().for_each(forget_seconds),
-        _ => {}
-    }
-}
-
 /// Weights and results of a finished benchmark, without durations, which vary.
 fn finish(place: &Place) -> Contents {
     let status = benchmark(place).status().unwrap();
@@ -63,9 +52,7 @@ fn finish(place: &Place) -> Contents {
     contents.retain(|name, _| compared.iter().any(|compared| name.ends_with(compared)));
     for (name, bytes) in &mut contents {
         if let (true, Some(bytes)) = (name.ends_with("report.json"), bytes) {
-            let mut report: Value = serde_json::from_slice(bytes).unwrap();
-            forget_seconds(&mut report);
-            *bytes = report.to_string().into_bytes();
+            *bytes = without_seconds(str::from_utf8(bytes).unwrap()).into_bytes();
         }
     }
     contents

@@ -8,13 +8,12 @@ use super::edits::edited;
 use super::valid_file::{ValidFile, names_file, with_file};
 use crate::{drawn_model, safetensors_file};
 use arbitrary::Unstructured;
-use ddl::network::weights::{Origin, Weights, load_weights, save_weights};
+use ddl::network::weights::{Origin, Weights, in_hex, load_weights, save_weights};
 use ddl::network::{ForecastWindows as _, MemoryConfig, MotionNetwork, ProposalConfig, StarConfig};
 use ddl::{Ddl, DeviceChoice, GoalModel, GoalRecipe, ModelSource, RunConfig, RunDirectory, Variant};
 use ddl_data::{PedestrianId, Window};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
-use std::fmt::Write as _;
 use std::path::Path;
 use tempfile::TempDir;
 
@@ -207,11 +206,7 @@ fn with_digest(file: &[u8]) -> Option<Vec<u8>> {
             part(numbers.get(start..end)?);
         }
     }
-    let mut digits = String::new();
-    for byte in hasher.finalize() {
-        let _ = write!(digits, "{byte:02x}"); // writing to a string cannot fail
-    }
-    *entry.get_mut("sha256")? = digits.into();
+    *entry.get_mut("sha256")? = in_hex(hasher).into();
     header["__metadata__"]["ddl"] = entry.to_string().into();
     Some(safetensors_file::join(&header, numbers))
 }

@@ -1,10 +1,10 @@
 //! The file of a scene memory.
 
 use super::valid_file::ValidFile;
+use ddl::network::weights::in_hex;
 use ddl_data::{OBSERVED, PedestrianId, Position};
 use ddl_memory::{MemoryError, SceneMemory};
 use sha2::{Digest as _, Sha256};
-use std::fmt::Write as _;
 
 const PEDESTRIANS: i64 = 3;
 const FRAMES: i64 = 45;
@@ -32,10 +32,7 @@ fn observe(memory: &mut SceneMemory, first: i64) {
 /// The file with the SHA-256 of its present content.
 fn with_digest(file: &[u8]) -> Option<Vec<u8>> {
     let end = file.iter().position(|byte| *byte == b'\n')?;
-    let mut head = "ddl-memory 1 ".to_owned();
-    for byte in Sha256::digest(&file[end + 1..]) {
-        let _ = write!(head, "{byte:02x}"); // writing to a string cannot fail
-    }
+    let head = format!("ddl-memory 1 {}", in_hex(Sha256::new_with_prefix(&file[end + 1..])));
     Some([head.as_bytes(), &file[end..]].concat())
 }
 
