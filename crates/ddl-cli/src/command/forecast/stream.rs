@@ -160,9 +160,8 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
                 tell(format_args!("note: coordinate frame assumed: {frame}"));
             }
             for windows in parts {
-                let clock = observed.clock;
                 let add = |moments: &[Moment<'_>], _: &mut StreamState| command.log(moments, &mut log);
-                answers_of(command, &model, windows?, clock, &mut state, add)?;
+                answers_of(command, &model, windows?, observed.clock, &mut state, add)?;
             }
             Ok(log.finish()?)
         })?;
