@@ -3,6 +3,7 @@
 use crate::recordings::EXTENSIONS;
 use anyhow::bail;
 use clap::{Arg, ArgMatches, Command};
+use ddl::RunDirectory;
 use ddl::data::{Convention, locate};
 use std::any::TypeId;
 use std::path::{Path, PathBuf};
@@ -19,23 +20,8 @@ const NO_TEXTS: [&str; 4] = ["out", "folder", "memory", "samples"];
 /// Options that name a run, of which every command writes and reads the same files.
 const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
 
-/// Names of files that commands write into the folder of `--out`, and those of a run.
-const WRITTEN: [&str; 14] = [
-    "config.json",
-    "evaluation.json",
-    "experts.safetensors",
-    "fingerprints.bin",
-    "metrics.jsonl",
-    "model.safetensors",
-    "moments.json",
-    "optimizer.safetensors",
-    "plan.json",
-    "proposal-state.safetensors",
-    "proposal.safetensors",
-    "report.html",
-    "report.json",
-    "report.md",
-];
+/// Names of files that commands write into the folder of `--out`, beside those of a run.
+const WRITTEN: [&str; 3] = ["plan.json", "report.html", "report.md"];
 
 /// A path among the arguments, with the name of its option as users type it.
 struct Named<'a> {
@@ -206,7 +192,7 @@ fn lost(output: &Path, Named { option, path: input }: &Named<'_>) -> Option<Path
 
 fn is_written(file: &Path) -> bool {
     let name = file.file_name().and_then(std::ffi::OsStr::to_str);
-    name.is_some_and(|name| WRITTEN.contains(&name))
+    name.is_some_and(|name| WRITTEN.contains(&name) || RunDirectory::FILES.contains(&name))
 }
 
 /// The absolute path without links; the last part need not exist.

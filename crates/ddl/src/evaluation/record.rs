@@ -10,7 +10,6 @@ use crate::trust::calibration::Calibration;
 use ddl_data::{Dataset, Recording};
 use ddl_report::{ForecastSnapshot, Report};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
 
 /// Everything the results depend on besides the run itself.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
@@ -63,7 +62,7 @@ pub fn is_evaluated(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest)
     let Some(run) = model.run() else {
         return false;
     };
-    let record = record_file(run);
+    let record = run.record();
     if ![&record, &run.report(), &run.moments()]
         .iter()
         .all(|file| file.is_file())
@@ -91,7 +90,7 @@ pub fn save_evaluation(
             .wrong("has no run directory for results; write them elsewhere (`Results::save`)"));
     };
     let _claimed = RunLock::wait(run.path())?;
-    let record = record_file(run);
+    let record = run.record();
     if record.is_file() {
         // Remove the record first, so that it never belongs to a half-written report.
         std::fs::remove_file(&record).map_err(|error| DdlError::io(&record, error))?;
@@ -104,9 +103,5 @@ pub fn save_evaluation(
 
 /// The recordings that a run was evaluated on; empty without a record of this version.
 pub(crate) fn measured_recordings(run: &RunDirectory) -> Vec<MeasuredRecording> {
-    read_json(&record_file(run)).map_or_else(|_| Vec::new(), |record: EvaluationRecord| record.recordings)
-}
-
-fn record_file(run: &RunDirectory) -> PathBuf {
-    run.path().join("evaluation.json")
+    read_json(&run.record()).map_or_else(|_| Vec::new(), |record: EvaluationRecord| record.recordings)
 }

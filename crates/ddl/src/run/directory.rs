@@ -40,6 +40,42 @@ pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunDirectory(PathBuf);
 
+/// A method for the path of each file, and the names of all.
+macro_rules! files {
+    ($($(#[$doc:meta])* $visible:vis $file:ident => $name:literal,)*) => {
+        impl RunDirectory {
+            /// The names of the files of a run, but of its weights after epochs.
+            pub const FILES: &[&str] = &[$($name),*];
+
+            $($(#[$doc])* $visible fn $file(&self) -> PathBuf {
+                self.0.join($name)
+            })*
+        }
+    };
+}
+
+files! {
+    config_file => "config.json",
+    metrics_file => "metrics.jsonl",
+    /// State of an unfinished run.
+    pub(crate) optimizer => "optimizer.safetensors",
+    /// Tracks of the expert library.
+    pub(crate) experts => "experts.safetensors",
+    /// Hashes of the motions that it was trained on.
+    pub(crate) fingerprints => "fingerprints.bin",
+    /// Weights of the proposal network.
+    pub(crate) proposal => "proposal.safetensors",
+    pub(crate) proposal_state => "proposal-state.safetensors",
+    /// Final weights.
+    pub(crate) model => "model.safetensors",
+    /// Results.
+    pub report => "report.json",
+    /// Moments of the evaluation, to look at.
+    pub(crate) moments => "moments.json",
+    /// The conditions of that evaluation.
+    pub(crate) record => "evaluation.json",
+}
+
 impl RunDirectory {
     /// The run at `path`, which need not exist.
     pub fn new(path: impl Into<PathBuf>) -> Self {
@@ -49,35 +85,6 @@ impl RunDirectory {
     /// The directory.
     pub fn path(&self) -> &Path {
         &self.0
-    }
-
-    /// Final weights.
-    pub(crate) fn model(&self) -> PathBuf {
-        self.0.join("model.safetensors")
-    }
-
-    /// State of an unfinished run.
-    pub(crate) fn optimizer(&self) -> PathBuf {
-        self.0.join("optimizer.safetensors")
-    }
-
-    /// Tracks of the expert library.
-    pub(crate) fn experts(&self) -> PathBuf {
-        self.0.join("experts.safetensors")
-    }
-
-    /// Hashes of the motions that it was trained on.
-    pub(crate) fn fingerprints(&self) -> PathBuf {
-        self.0.join("fingerprints.bin")
-    }
-
-    /// Weights of the proposal network.
-    pub(crate) fn proposal(&self) -> PathBuf {
-        self.0.join("proposal.safetensors")
-    }
-
-    pub(crate) fn proposal_state(&self) -> PathBuf {
-        self.0.join("proposal-state.safetensors")
     }
 
     /// Copies the trained goals of another run, so that they are not trained again. Loading them checks that they are
@@ -96,27 +103,9 @@ impl RunDirectory {
         Ok(())
     }
 
-    /// Results.
-    pub fn report(&self) -> PathBuf {
-        self.0.join("report.json")
-    }
-
-    /// Moments of the evaluation, to look at.
-    pub(crate) fn moments(&self) -> PathBuf {
-        self.0.join("moments.json")
-    }
-
     /// Weights after an epoch.
     pub(crate) fn epoch(&self, epoch: usize) -> PathBuf {
         self.0.join("epochs").join(format!("{epoch:03}.safetensors"))
-    }
-
-    fn config_file(&self) -> PathBuf {
-        self.0.join("config.json")
-    }
-
-    fn metrics_file(&self) -> PathBuf {
-        self.0.join("metrics.jsonl")
     }
 
     pub(crate) fn has_config(&self) -> bool {
