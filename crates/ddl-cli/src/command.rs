@@ -185,7 +185,9 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         recordings::tell_notes(&read);
         recordings::tell_ticks(&read);
         recordings::warn_of_implausible(&read);
-        return Ok(Dataset::own(read.into_iter().map(|read| read.recording).collect())?);
+        return Ok(Dataset::own(
+            read.into_iter().map(|read| read.timed.recording).collect(),
+        )?);
     }
     if units.are_given() {
         bail!(

@@ -4,7 +4,7 @@ use crate::telling::{self, tell};
 use crate::units::{ReadRecording, Units};
 use anyhow::{Context as _, bail};
 use ddl::data::PlausibilityWarning;
-use ddl::{OWN_CLOCKS, in_frames, words_of_misfits, words_of_warning};
+use ddl::{OWN_CLOCKS, TimedRecording, in_frames, words_of_misfits, words_of_warning};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
@@ -74,23 +74,26 @@ fn tell_grouped<'a>(kind: &str, messages: impl IntoIterator<Item = (&'a str, Str
 }
 
 pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ReadRecording>) {
-    let notes = read.into_iter().flat_map(|read| {
-        let notes = read.notes.iter().chain(&read.guessed);
-        notes.map(move |note| (read.recording.name(), note.clone()))
+    let notes = read.into_iter().flat_map(|ReadRecording { timed, .. }| {
+        let notes = timed.notes.iter().chain(&timed.guessed);
+        notes.map(move |note| (timed.recording.name(), note.clone()))
     });
     tell_grouped("note", notes);
 }
 
 /// Says what the frame numbers of windows and results count, where that is not what the files count.
 pub(crate) fn tell_ticks(read: &[ReadRecording]) {
-    let finer = read.iter().filter(|read| !read.clock.counts_frames());
-    let counted = finer.map(|read| {
-        let counted = match read.clock.tick(1) {
+    let finer = read
+        .iter()
+        .map(|read| &read.timed)
+        .filter(|timed| !timed.clock.counts_frames());
+    let counted = finer.map(|timed| {
+        let counted = match timed.clock.tick(1) {
             Ok(ticks) if ticks > 1 => format!("parts of a frame, {ticks} in each"),
             _ => "microseconds".to_owned(),
         };
         (
-            read.recording.name(),
+            timed.recording.name(),
             format!("the frames of windows and results count {counted}"),
         )
     });
@@ -131,7 +134,7 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
 /// Warns of suspicious speeds: with wrong units, training and evaluation are meaningless.
 pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
     let (mut warnings, mut notes) = (Vec::new(), Vec::new());
-    for ReadRecording { recording, clock, .. } in read {
+    for TimedRecording { recording, clock, .. } in read.iter().map(|read| &read.timed) {
         let observed = recording.observe_each(recording.live_tracks(), |_| ());
         let warning = recording.speed_warning();
         let misfits = words_of_misfits(recording, *clock, &observed.misfits, warning.as_ref());

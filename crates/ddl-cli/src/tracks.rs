@@ -2,7 +2,7 @@
 
 use crate::recordings;
 use crate::telling::tell;
-use crate::units::Units;
+use crate::units::{ReadRecording, Units};
 use anyhow::bail;
 use clap::Args;
 use ddl::data::{Completeness, LiveTracks};
@@ -68,16 +68,16 @@ impl TrackOptions {
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast, for a run; of a log, its topic.
     pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<(ObservedTracks, Option<TrackTopic>)> {
-        let read = self.units.or_those_of(run).read(self.file())?;
-        for note in read.notes.iter().chain(&read.guessed) {
+        let ReadRecording { topic, timed, .. } = self.units.or_those_of(run).read(self.file())?;
+        for note in timed.notes.iter().chain(&timed.guessed) {
             tell(format_args!("note: {note}"));
         }
-        let mut tracks = self.windows_of(read.recording.live_tracks());
+        let mut tracks = self.windows_of(timed.recording.live_tracks());
         if self.last && self.every.is_none() {
             // With clocks of their own, too, the last row is the last moment.
             tracks = tracks.with_interval(0.0);
         }
-        let observed = ObservedTracks::new((read.recording, read.clock), tracks, self.last);
+        let observed = ObservedTracks::new((timed.recording, timed.clock), tracks, self.last);
         if !observed.has_common_frames && self.every.is_none() && !self.last {
             tell(format_args!(
                 "note: {OWN_CLOCKS} (--every; of occupancy --moments-every)"
@@ -89,7 +89,7 @@ impl TrackOptions {
         if let Some(problem) = observed.problem() {
             bail!("{}: {problem}", self.file().display());
         }
-        Ok((observed, read.topic))
+        Ok((observed, topic))
     }
 }
 

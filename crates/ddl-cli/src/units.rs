@@ -50,12 +50,8 @@ pub(crate) struct ReadRecording {
     pub(crate) format: &'static str,
     /// Its topic in a log.
     pub(crate) topic: Option<TrackTopic>,
-    pub(crate) recording: Recording,
-    pub(crate) clock: Clock,
-    /// A note on its frame step, if neither options nor the file give the rate.
-    pub(crate) guessed: Option<String>,
-    /// Notes on its rate, for [`tell_notes`](crate::recordings::tell_notes).
-    pub(crate) notes: Vec<String>,
+    /// Its notes are for [`tell_notes`](crate::recordings::tell_notes).
+    pub(crate) timed: TimedRecording,
 }
 
 fn columns(text: &str) -> Result<ColumnChoice, String> {
@@ -145,16 +141,9 @@ impl Units {
     pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ReadRecording> {
         let (rows, format, topic) = self.in_metres(file)?;
         let timed = TimedRecording::new(&rows, &self.rate(), &self.remembered);
-        let timed = timed.with_context(|| file.display().to_string())?;
-        let is_stated = rows.stated_clock().is_some();
-        Ok(ReadRecording {
-            format,
-            topic,
-            notes: timed.notes.into_iter().chain(self.note_of_run(!is_stated)).collect(),
-            recording: timed.recording,
-            clock: timed.clock,
-            guessed: timed.guessed,
-        })
+        let mut timed = timed.with_context(|| file.display().to_string())?;
+        timed.notes.extend(self.note_of_run(rows.stated_clock().is_none()));
+        Ok(ReadRecording { format, topic, timed })
     }
 
     /// A note about units taken from the run; `rate`: whether no file gives its rate.

@@ -4,11 +4,11 @@ mod place_memory;
 
 use crate::command::Telling;
 use crate::telling::{many, tell};
-use crate::units::{ReadRecording, Units};
+use crate::units::Units;
 use crate::{output, recordings};
 use clap::Args;
 use ddl::data::{Clock, PlausibilityWarning, Recording, Summary, Window};
-use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource};
+use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource, TimedRecording};
 use place_memory::{MemoryOfFile, MemoryPicture};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -48,7 +48,7 @@ impl Data {
         let (mut read, mut errors) = recordings::read_each(&of_tracks, &self.units);
         for (_, read) in &mut read {
             // The summary prints the frame step.
-            read.guessed = None;
+            read.timed.guessed = None;
         }
         errors.extend(not_memories);
         if errors.is_empty() {
@@ -59,7 +59,7 @@ impl Data {
         let mut of_each = Vec::new();
         let mut total = Total::default();
         for (file, read) in &read {
-            let ReadRecording { recording, clock, .. } = read;
+            let TimedRecording { recording, clock, .. } = &read.timed;
             let summary = recording.summary();
             writeln!(text, "{}\n  format       {}", file.display(), read.format)?;
             write_summary(&mut text, &summary, recording, *clock)?;
@@ -68,7 +68,7 @@ impl Data {
             of_each.push(facts);
             total.add(&summary);
         }
-        let warn_of_models = || warn_of_model(read.iter().map(|(_, read)| &read.recording));
+        let warn_of_models = || warn_of_model(read.iter().map(|(_, read)| &read.timed.recording));
         if self.telling.json {
             let of_memories: Vec<Value> = memories.iter().map(MemoryOfFile::facts).collect();
             output::print_json(&json!({"recordings": of_each, "memories": of_memories, "total": total}))?;
