@@ -252,6 +252,19 @@ impl Window {
         self.pedestrians.len()
     }
 
+    /// Consecutive windows of at most so many pedestrians in all; a larger window is a part of its own.
+    pub fn parts(windows: &[Self], most: usize) -> impl Iterator<Item = &[Self]> {
+        let mut pedestrians = 0;
+        windows.chunk_by(move |window, next| {
+            pedestrians += window.len();
+            let fits = pedestrians + next.len() <= most;
+            if !fits {
+                pedestrians = 0;
+            }
+            fits
+        })
+    }
+
     /// Number of positions of each track, T: 20, or 8 without a future.
     pub fn steps(&self) -> usize {
         self.frames.len()

@@ -78,15 +78,8 @@ impl ForecastOptions {
     /// Forecasts the windows in batches of pedestrians; stops between batches if the caller was interrupted.
     fn forecast_until(&self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<PlainOrCertified>, DdlError> {
         let mut forecasts = Vec::with_capacity(windows.len());
-        while forecasts.len() < windows.len() && !stop.is_asked() {
-            let rest = &windows[forecasts.len()..];
-            let mut pedestrians = 0;
-            let enough = |window: &Window| {
-                pedestrians += window.len();
-                pedestrians >= BATCH
-            };
-            let count = rest.iter().position(enough).map_or(rest.len(), |last| last + 1);
-            forecasts.extend(self.forecast(model, &rest[..count])?);
+        for some in Window::parts(windows, BATCH).take_while(|_| !stop.is_asked()) {
+            forecasts.extend(self.forecast(model, some)?);
         }
         Ok(forecasts)
     }

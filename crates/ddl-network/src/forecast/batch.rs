@@ -83,14 +83,8 @@ pub(super) fn batches<'a>(
     };
     let mut batches = Vec::new();
     let mut first = 0;
-    while first < windows.len() {
-        let mut last = first;
-        let mut pedestrians = 0;
-        while last < windows.len() && (pedestrians == 0 || pedestrians + windows[last].len() <= at_once) {
-            pedestrians += windows[last].len();
-            last += 1;
-        }
-        let originals = &windows[first..last];
+    for originals in Window::parts(windows, at_once) {
+        let last = first + originals.len();
         let origins: Vec<Position> = originals.iter().map(origin).collect();
         let orders: Vec<Vec<usize>> = originals.iter().map(|window| order(window, by)).collect();
         let of_goal = |k: usize| {

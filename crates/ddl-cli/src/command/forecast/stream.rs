@@ -146,7 +146,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     state.frame_id = topic.as_ref().and_then(|topic| topic.frame_id.clone());
     let (mut lines, mut bytes) = (0, 0);
     let interrupt = Interrupt::catch()?;
-    let parts = parts_of(&observed.windows).map(|windows| {
+    let parts = Window::parts(&observed.windows, AT_ONCE).map(|windows| {
         // No unfinished file is left.
         if interrupt.flow().is_break() {
             bail!(DdlError::Interrupted);
@@ -212,19 +212,4 @@ impl StreamOptions {
             ));
         }
     }
-}
-
-/// The windows in parts of about so many pedestrians as are forecast at once.
-fn parts_of(windows: &[Window]) -> impl Iterator<Item = &[Window]> {
-    let mut rest = windows;
-    std::iter::from_fn(move || {
-        let mut pedestrians = 0;
-        let few = rest.iter().take_while(|window| {
-            pedestrians += window.len();
-            pedestrians <= AT_ONCE
-        });
-        let (part, others) = rest.split_at_checked(few.count().max(1))?;
-        rest = others;
-        Some(part)
-    })
 }
