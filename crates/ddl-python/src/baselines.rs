@@ -1,11 +1,11 @@
 //! Baselines: forecasts that need no training.
 
 use crate::errors::of_any;
-use crate::forecasts::{EmptyFields, PlainOrCertified, parts};
+use crate::forecasts::{EmptyFields, parts};
 use crate::observed::Observed;
 use ddl::data::{Completeness, Window};
 use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine};
-use ddl::{Forecaster, WeightedGoals};
+use ddl::{CertifiedForecast, Forecaster, WeightedGoals};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -39,7 +39,7 @@ pub(crate) fn baseline<'py>(
         .as_ref()
         .map(|window| py.detach(|| forecaster.forecast(window)));
     let forecast = forecast.transpose().map_err(of_any)?;
-    let forecast = forecast.map(PlainOrCertified::Plain);
+    let forecast = forecast.map(CertifiedForecast::from);
     let goals = goals.map(|goals| goals.shape()[1]);
     let many = if name == "angular_noise" { 20 } else { 1 };
     let empty = EmptyFields {

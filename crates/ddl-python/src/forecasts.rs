@@ -12,22 +12,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
 
-/// A forecast, with the evidence of its certificates if requested.
-#[derive(Debug)]
-pub(crate) enum PlainOrCertified {
-    Plain(Forecast),
-    Certified(CertifiedForecast),
-}
-
-impl PlainOrCertified {
-    pub(crate) fn forecast(&self) -> &Forecast {
-        match self {
-            Self::Plain(forecast) => forecast,
-            Self::Certified(certified) => &certified.forecast,
-        }
-    }
-}
-
 /// The optional fields of the result for an empty window: those that the forecaster gives for other windows.
 #[derive(Debug, Clone, Copy, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each tells whether one field is present")]
@@ -45,10 +29,10 @@ pub(crate) struct EmptyFields {
 pub(crate) fn parts<'py>(
     py: Python<'py>,
     observed: &Observed,
-    forecast_of_window: Option<&PlainOrCertified>,
+    forecast_of_window: Option<&CertifiedForecast>,
     empty: EmptyFields,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let forecast = forecast_of_window.map(PlainOrCertified::forecast);
+    let forecast = forecast_of_window.map(|certified| &certified.forecast);
     let rows = &observed.rows;
     let (n, k) = (rows.len(), forecast.map_or(empty.hypotheses, Forecast::hypotheses));
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
@@ -88,12 +72,9 @@ pub(crate) fn parts<'py>(
     dict.set_item("certified", certified)?;
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
     spread_and_regions(py, rows, forecast, empty, &dict)?;
-    let evidence = match forecast_of_window {
-        Some(PlainOrCertified::Certified(certified)) => Some(certificates(py, Some(certified), rows, k)?),
-        None if empty.certificates => Some(certificates(py, None, rows, k)?),
-        _ => None,
-    };
-    dict.set_item("certificates", evidence)?;
+    let has_evidence = forecast_of_window.map_or(empty.certificates, |one| !one.certificates.is_empty());
+    let evidence = has_evidence.then(|| certificates(py, forecast_of_window, rows, k));
+    dict.set_item("certificates", evidence.transpose()?)?;
     Ok(dict)
 }
 
@@ -153,7 +134,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
 pub(crate) fn named_parts<'py>(
     py: Python<'py>,
     window: &Window,
-    forecast_of_window: &PlainOrCertified,
+    forecast_of_window: &CertifiedForecast,
     moments: Moments,
 ) -> PyResult<Bound<'py, PyDict>> {
     let observed = Observed::of_window(window.clone());

@@ -2,13 +2,13 @@
 
 use crate::arrays::points;
 use crate::errors::{of_any, raised};
-use crate::forecasts::{PlainOrCertified, named_parts};
+use crate::forecasts::named_parts;
 use crate::interruptible::{User, run_on, wait_for};
 use crate::model::Model;
 use crate::moments::{Moments, clock_of_rate, unit_named};
 use crate::observed::WindowOptions;
 use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, PedestrianNames, Position, TimeUnit, Window};
-use ddl::{AdaptiveRegions, Ddl, DdlError, LiveForecaster, MemoryFile};
+use ddl::{AdaptiveRegions, CertifiedForecast, Ddl, DdlError, LiveForecaster, MemoryFile};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -37,7 +37,7 @@ struct WatchedPlace {
 /// The answer to a frame.
 struct Answer {
     /// `None` without pedestrians to forecast.
-    forecast: Option<(Window, PlainOrCertified)>,
+    forecast: Option<(Window, CertifiedForecast)>,
     /// The pedestrians whose position does not fit their track, with its distance (m) from where it was expected.
     misfits: Vec<(i64, f64, String)>,
     /// An error if the memory could not be written.
@@ -48,13 +48,13 @@ impl WatchedPlace {
     fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
         let forecast = if self.joint {
             let now = self.live.push_joint(frame, seen, None)?;
-            now.map(|now| (now.window, PlainOrCertified::Plain(now.forecast)))
+            now.map(|now| (now.window, now.forecast.into()))
         } else if self.certificates {
             let now = self.live.push_certified(frame, seen)?;
-            now.map(|now| (now.window, PlainOrCertified::Certified(now.forecast)))
+            now.map(|now| (now.window, now.forecast))
         } else {
             let now = self.live.push(frame, seen)?;
-            now.map(|now| (now.window, PlainOrCertified::Plain(now.forecast)))
+            now.map(|now| (now.window, now.forecast.into()))
         };
         let mut unwritten = None;
         if let (Some(file), Some(place)) = (&mut self.file, self.live.place())

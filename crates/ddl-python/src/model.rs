@@ -2,13 +2,16 @@
 
 use crate::arrays::{array, numbers};
 use crate::errors::{of_any, raised};
-use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
+use crate::forecasts::{EmptyFields, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, WindowOptions, past_tracks};
 use crate::recording::{Recording, doubt};
 use crate::scene::plan;
 use ddl::data::{Completeness, PedestrianId, Window};
-use ddl::{Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource, RecordingPlayer};
+use ddl::{
+    CertifiedForecast, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource,
+    RecordingPlayer,
+};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -56,27 +59,20 @@ impl ForecastOptions {
         })
     }
 
-    fn forecast(&self, model: &Ddl, windows: &[Window]) -> Result<Vec<PlainOrCertified>, ForecastError> {
-        let plain = |forecasts: Vec<ddl::Forecast>| forecasts.into_iter().map(PlainOrCertified::Plain).collect();
-        let certified =
-            |forecasts: Vec<ddl::CertifiedForecast>| forecasts.into_iter().map(PlainOrCertified::Certified).collect();
-        if self.joint {
-            return Ok(if self.certificates {
-                certified(model.forecast_scenes_certified(windows)?)
-            } else {
-                plain(model.forecast_scenes(windows, self.given.as_ref())?)
-            });
+    fn forecast(&self, model: &Ddl, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
+        let plain = |forecasts: Vec<ddl::Forecast>| forecasts.into_iter().map(Into::into).collect();
+        match (self.joint, self.certificates, self.one) {
+            (true, true, _) => model.forecast_scenes_certified(windows),
+            (true, false, _) => model.forecast_scenes(windows, self.given.as_ref()).map(plain),
+            (false, false, false) => model.forecast_all(windows).map(plain),
+            (false, false, true) => model.forecast_central(windows).map(plain),
+            (false, true, false) => model.forecast_certified(windows),
+            (false, true, true) => model.forecast_central_certified(windows),
         }
-        Ok(match (self.one, self.certificates) {
-            (false, false) => plain(model.forecast_all(windows)?),
-            (true, false) => plain(model.forecast_central(windows)?),
-            (false, true) => certified(model.forecast_certified(windows)?),
-            (true, true) => certified(model.forecast_central_certified(windows)?),
-        })
     }
 
     /// Forecasts the windows in batches of pedestrians; stops between batches if the caller was interrupted.
-    fn forecast_until(&self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<PlainOrCertified>, DdlError> {
+    fn forecast_until(&self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<CertifiedForecast>, DdlError> {
         let mut forecasts = Vec::with_capacity(windows.len());
         for some in Window::parts(windows, BATCH).take_while(|_| !stop.is_asked()) {
             forecasts.extend(self.forecast(model, some)?);
@@ -243,7 +239,7 @@ impl Model {
         };
         let options = ForecastOptions::new(&self.0, self.hypotheses(), false, joint)?;
         let forecasts = self.forecasts(py, options, player.shown())?;
-        let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
+        let forecasts: Vec<_> = forecasts.iter().map(|one| &one.forecast).collect();
         let (name, clock) = (recording.tracks.name(), recording.moments.clock);
         let page = player
             .to_html(&forecasts, name, observed.warning.as_ref(), clock)
@@ -258,7 +254,7 @@ impl Model {
         py: Python<'_>,
         options: ForecastOptions,
         windows: Vec<Window>,
-    ) -> PyResult<Vec<PlainOrCertified>> {
+    ) -> PyResult<Vec<CertifiedForecast>> {
         let model = Arc::clone(&self.0);
         let forecasts = run(py, move |stop| options.forecast_until(&model, &windows, stop))?;
         forecasts.map_err(raised)

@@ -21,8 +21,16 @@ use rayon::prelude::*;
 pub struct CertifiedForecast {
     /// The forecast; [`certified`](Forecast::certified) states which certificates hold.
     pub forecast: Forecast,
-    /// `[N][K]`.
+    /// `[N][K]`; none of a forecast that was made without them.
     pub certificates: Vec<LyapunovCertificate<f64>>,
+}
+
+/// Without certificates.
+impl From<Forecast> for CertifiedForecast {
+    fn from(forecast: Forecast) -> Self {
+        let certificates = Vec::new();
+        Self { forecast, certificates }
+    }
 }
 
 impl CertifiedForecast {

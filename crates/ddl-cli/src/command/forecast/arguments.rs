@@ -1,12 +1,12 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
-use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts};
+use crate::command::forecast::moment::{SceneWindows, StreamState};
 use crate::command::forecast::stream::{Answer, OutputFormat, StreamOptions, answer};
 use crate::command::forecast::table;
 use crate::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use anyhow::bail;
 use clap::Args;
-use ddl::{Ddl, Forecaster as _, Moment, joint_lines, json_lines};
+use ddl::{CertifiedForecast, Ddl, Forecaster as _, Moment, joint_lines, json_lines};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 
@@ -80,7 +80,7 @@ impl Answer for ForecastCommand {
         model: &Ddl,
         windows: SceneWindows<'_>,
         state: &mut StreamState,
-    ) -> anyhow::Result<WindowForecasts> {
+    ) -> anyhow::Result<Vec<CertifiedForecast>> {
         let given = self.given.read()?;
         if let Some(given) = &given {
             for window in windows.windows {
@@ -88,17 +88,18 @@ impl Answer for ForecastCommand {
             }
         }
         let some = windows.windows;
-        let mut forecasts = match (self.joint, self.certificate, self.one) {
-            (true, true, _) => WindowForecasts::Certified(model.forecast_scenes_certified(some)?),
-            (true, false, _) => WindowForecasts::Plain(model.forecast_scenes(some, given.as_ref())?),
-            (false, false, false) => WindowForecasts::Plain(model.forecast_all(some)?),
-            (false, false, true) => WindowForecasts::Plain(model.forecast_central(some)?),
-            (false, true, false) => WindowForecasts::Certified(model.forecast_certified(some)?),
-            (false, true, true) => WindowForecasts::Certified(model.forecast_central_certified(some)?),
+        let plain = |forecasts: Vec<ddl::Forecast>| forecasts.into_iter().map(Into::into).collect();
+        let mut forecasts: Vec<CertifiedForecast> = match (self.joint, self.certificate, self.one) {
+            (true, true, _) => model.forecast_scenes_certified(some)?,
+            (true, false, _) => plain(model.forecast_scenes(some, given.as_ref())?),
+            (false, false, false) => plain(model.forecast_all(some)?),
+            (false, false, true) => plain(model.forecast_central(some)?),
+            (false, true, false) => model.forecast_certified(some)?,
+            (false, true, true) => model.forecast_central_certified(some)?,
         };
         if !self.region.is_empty() && !self.joint {
-            for (i, forecast) in forecasts.each_mut().into_iter().enumerate() {
-                *forecast = state.adapted(windows, i, forecast.clone());
+            for (i, one) in forecasts.iter_mut().enumerate() {
+                one.forecast = state.adapted(windows, i, one.forecast.clone());
             }
         }
         Ok(forecasts)

@@ -14,36 +14,14 @@ pub(crate) struct SceneWindows<'a> {
     pub(crate) scenes: &'a [Option<SceneName>],
 }
 
-/// Forecasts of the windows, one for each.
-pub(crate) enum WindowForecasts {
-    Plain(Vec<ddl::Forecast>),
-    Certified(Vec<CertifiedForecast>),
-}
-
-impl WindowForecasts {
-    /// The forecasts, each with the certificates if there are any.
-    fn with_certificates(&self) -> Vec<(&ddl::Forecast, Option<&CertifiedForecast>)> {
-        match self {
-            Self::Plain(forecasts) => forecasts.iter().map(|forecast| (forecast, None)).collect(),
-            Self::Certified(certified) => certified.iter().map(|one| (&one.forecast, Some(one))).collect(),
-        }
-    }
-
-    pub(crate) fn each_mut(&mut self) -> Vec<&mut ddl::Forecast> {
-        match self {
-            Self::Plain(forecasts) => forecasts.iter_mut().collect(),
-            Self::Certified(certified) => certified.iter_mut().map(|one| &mut one.forecast).collect(),
-        }
-    }
-}
-
 impl<'a> SceneWindows<'a> {
-    pub(crate) fn moments(self, forecasts: &'a WindowForecasts, clock: Clock) -> Vec<Moment<'a>> {
-        let pairs = self.windows.iter().zip(forecasts.with_certificates()).enumerate();
-        let moments = pairs.map(|(i, (window, (forecast, certified)))| Moment {
+    /// The moments of the windows with the forecast of each.
+    pub(crate) fn moments(self, forecasts: &'a [CertifiedForecast], clock: Clock) -> Vec<Moment<'a>> {
+        let pairs = self.windows.iter().zip(forecasts).enumerate();
+        let moments = pairs.map(|(i, (window, one))| Moment {
             scene: self.scenes.get(i).and_then(Option::as_ref),
-            certified,
-            ..Moment::new(window, forecast, clock)
+            certified: (!one.certificates.is_empty()).then_some(one),
+            ..Moment::new(window, &one.forecast, clock)
         });
         moments.collect()
     }

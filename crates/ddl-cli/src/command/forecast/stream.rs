@@ -1,7 +1,7 @@
 //! The commands that answer every moment of a file of tracks or of live tracks.
 
 use crate::command::forecast::live;
-use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
+use crate::command::forecast::moment::{SceneWindows, StreamState, warn_of_violation};
 use crate::command::{Machine, ModelChoice};
 use crate::interrupt::Interrupt;
 use crate::output::{file_of, write_file, write_parts};
@@ -10,7 +10,7 @@ use crate::tracks::{TrackOptions, tell_what_was_estimated};
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
-use ddl::{Ddl, DdlError, Moment};
+use ddl::{CertifiedForecast, Ddl, DdlError, Moment};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 use std::io::IsTerminal as _;
@@ -68,8 +68,9 @@ pub(crate) trait Answer {
         model: &Ddl,
         windows: SceneWindows<'_>,
         _state: &mut StreamState,
-    ) -> anyhow::Result<WindowForecasts> {
-        Ok(WindowForecasts::Plain(model.forecast_scenes(windows.windows, None)?))
+    ) -> anyhow::Result<Vec<CertifiedForecast>> {
+        let forecasts = model.forecast_scenes(windows.windows, None)?;
+        Ok(forecasts.into_iter().map(Into::into).collect())
     }
 
     /// Adds the answers of the moments to a log.
