@@ -191,12 +191,17 @@ impl TrackColumns {
 
     /// Whether a line after the first row is a comment. A row may begin with the sign, in the name of a pedestrian.
     fn is_comment(&self, text: &str, fields: &[Cow<'_, str>]) -> bool {
-        let has_time = || {
-            fields
-                .get(self.header.frame)
-                .is_some_and(|time| self.separator.with_point(time).parse::<f64>().is_ok())
+        let is_time = |time: &Cow<'_, str>| {
+            let time = self.separator.with_point(time);
+            time.parse::<f64>().is_ok() || field::unit_of(&time) == TimeUnit::Dates
         };
-        is_comment(text) && !(fields.len() == self.names.len() && has_time())
+        is_comment(text) && !(self.is_whole(fields) && fields.get(self.header.frame).is_some_and(is_time))
+    }
+
+    /// Whether a line has the fields of a row; those beyond are empty.
+    fn is_whole(&self, fields: &[Cow<'_, str>]) -> bool {
+        let mut beyond = fields.iter().skip(self.names.len());
+        fields.len() >= self.needed && (self.format == Format::Kitti || beyond.all(|field| field.is_empty()))
     }
 
     /// The observations of all rows of a file, each with its line. A fraction in the column of the frame shows seconds;
@@ -207,10 +212,10 @@ impl TrackColumns {
         most: usize,
     ) -> Result<Vec<TrackRow>, Misread> {
         if self.header.time == TimeColumn::Time {
-            let mut times = rows.clone().filter(|(_, text)| !is_comment(text));
-            let time = times.find_map(|(line, text)| {
+            let time = rows.clone().find_map(|(line, text)| {
                 let fields = self.separator.fields(text, line).ok()?;
-                fields.into_iter().nth(self.header.frame)
+                let is_row = !self.is_comment(text, &fields);
+                fields.into_iter().nth(self.header.frame).filter(|_| is_row)
             });
             self.look_at(time.map(Cow::into_owned).as_deref());
         }
@@ -235,7 +240,7 @@ impl TrackColumns {
                 .get(self.header.frame)
                 .filter(|_| self.header.time == TimeColumn::Frame);
             let has_fraction = |time: &&Cow<'_, str>| field::has_fraction(&self.separator.with_point(time));
-            if let Some(time) = time.filter(|time| has_fraction(time) && !is_comment(text)) {
+            if let Some(time) = time.filter(|time| has_fraction(time) && !self.is_comment(text, &fields)) {
                 self.look_at(Some(time));
                 return Ok(None);
             }
@@ -339,10 +344,8 @@ impl TrackColumns {
         if self.is_comment(text, fields) {
             return Ok(None);
         }
-        let (names, found) = (self.names.len(), fields.len());
-        let beyond = fields.get(names..).unwrap_or_default();
-        if found < self.needed || self.format != Format::Kitti && beyond.iter().any(|field| !field.is_empty()) {
-            return Err(FilePlace::line(line).wrong(self.wrong_count(found)));
+        if !self.is_whole(fields) {
+            return Err(FilePlace::line(line).wrong(self.wrong_count(fields.len())));
         }
         if !self.filter.counts(fields, self.header.place.columns()) {
             return Ok(None);
