@@ -24,6 +24,8 @@ const JUMP: f64 = 12.0;
 /// even a standing pedestrian moves more than this, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
+/// Speed (m/s) below which nobody walks straight and steadily for that many steps.
+const CRAWLING: f64 = 0.1;
 /// Largest side (m) of an area in which three people stand but do not walk, and the share of it that is crossed
 /// in a walk.
 const NARROW: f64 = 1.5;
@@ -53,10 +55,10 @@ pub enum PlausibilityWarning {
     )]
     NoSteps { frame_step: i64 },
     #[error(
-        "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian \
-         0.4 s apart?"
+        "half of the steps{whose} are faster than {median:.1} m/s; are the positions in metres, and the rows of a \
+         pedestrian 0.4 s apart?"
     )]
-    Fast { median: f64 },
+    Fast { median: f64, whose: &'static str },
     #[error(
         "nine in ten steps of walking pedestrians are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s \
          apart, or closer?"
@@ -71,6 +73,11 @@ pub enum PlausibilityWarning {
         "no pedestrian moves farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
     )]
     Still { farthest: f64 },
+    #[error(
+        "pedestrians who go straight on are no faster than {speed:.5} m/s; are the positions in metres, or in degrees, \
+         kilometres or shares of a picture (0 to 1)?"
+    )]
+    Crawling { speed: f64 },
     #[error(
         "all {pedestrians} pedestrians are within {side:.1} m, and walk through it; are the positions in metres, or in \
          shares of a picture (0 to 1) or kilometres?"
@@ -128,6 +135,9 @@ pub(crate) struct Speeds {
     pub(crate) fastest: Option<Fastest>,
     /// The 90 % quantile of the speeds of steps of tracks that walk, m/s.
     pub(crate) brisk: Option<f64>,
+    /// The median of the same speeds, and the largest speed of a track that goes straight on.
+    walking: Option<f64>,
+    straight: Option<f64>,
     /// Largest distance between the first and last position of any pedestrian, m.
     pub(crate) farthest: f64,
     pub(crate) pedestrians: usize,
@@ -149,6 +159,8 @@ impl Speeds {
         if pedestrians > 1 && rows as f64 > PLACEHOLDERS * self.steps as f64 {
             return Some(PlausibilityWarning::Placeholders { rows, pedestrians });
         }
+        let speeds = [(Some(median), ""), (self.walking, " of walking pedestrians")];
+        let mut speeds = speeds.into_iter().filter_map(|(speed, whose)| Some((speed?, whose)));
         let crosses = self.farthest > CROSSED * self.side;
         if self.farthest < STILL && self.steps >= MANY_STEPS {
             let farthest = self.farthest;
@@ -158,8 +170,8 @@ impl Speeds {
                 pedestrians: self.pedestrians,
                 side: self.side,
             })
-        } else if median > IMPLAUSIBLE {
-            Some(PlausibilityWarning::Fast { median })
+        } else if let Some((median, whose)) = speeds.find(|(speed, _)| *speed > IMPLAUSIBLE) {
+            Some(PlausibilityWarning::Fast { median, whose })
         } else if self.repeated > OFTEN_REPEATED {
             let share = self.repeated;
             Some(PlausibilityWarning::Repeated { share })
@@ -168,7 +180,9 @@ impl Speeds {
             Some(PlausibilityWarning::Jump { fastest, when })
         } else {
             let brisk = self.brisk.filter(|&brisk| brisk < CREEPING);
-            brisk.map(|brisk| PlausibilityWarning::Slow { brisk })
+            let slow = brisk.map(|brisk| PlausibilityWarning::Slow { brisk });
+            let straight = self.straight.filter(|speed| speed.max(median) < CRAWLING);
+            slow.or(straight.map(|speed| PlausibilityWarning::Crawling { speed }))
         }
     }
 }
@@ -185,7 +199,7 @@ impl Recording {
         let step = self.frame_step();
         let (low, high) = self.corners();
         let mut speeds: Vec<(f64, &Observation)> = Vec::new();
-        let mut walking: Vec<f64> = Vec::new();
+        let (mut walking, mut straight): (Vec<f64>, Option<f64>) = (Vec::new(), None);
         let (mut at_zero, mut repeated, mut walked) = ([0; 2], 0, 0);
         for track in tracks.values() {
             let zeros = track
@@ -200,6 +214,8 @@ impl Recording {
                 let before = position_at(track, seen.frame - step, step)?;
                 Some((speed(before, seen.position), *seen))
             }));
+            let steady = straight_speed(track, &speeds[first..], step);
+            straight = straight.into_iter().chain(steady).reduce(f64::max);
             if way(track) > FAR {
                 (repeated, walked) = (repeated + repeats(track, step), walked + track.len());
                 walking.extend(speeds[first..].iter().map(|(speed, _)| *speed));
@@ -217,6 +233,8 @@ impl Recording {
                 frame: seen.frame,
             }),
             brisk: walking.get(walking.len() * 9 / 10).copied(),
+            walking: walking.get(walking.len() / 2).copied(),
+            straight,
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
             pedestrians: tracks.len(),
             side: (high[0] - low[0]).max(high[1] - low[1]),
@@ -250,6 +268,16 @@ pub(crate) fn is_frozen(track: &[&Observation], step: i64) -> bool {
     let before = position_at(track, start.frame - step, step);
     let is_long = (last.frame - start.frame) as f64 * TIME_STEP >= FROZEN * step as f64;
     is_long && before.is_some_and(|before| speed(before, start.position) > WALKING)
+}
+
+/// The speed of a track (m/s) that goes straight on: at nearly all of its many steps about as fast as from its first
+/// position to its last.
+fn straight_speed(track: &[&Observation], steps: &[(f64, &Observation)], step: i64) -> Option<f64> {
+    let seconds = (track[track.len() - 1].frame - track[0].frame) as f64 * TIME_STEP / step as f64;
+    let mean = way(track) / seconds;
+    let steady = steps.iter().filter(|(speed, _)| (0.5..=1.5).contains(&(speed / mean)));
+    let is_long = steps.len() >= MANY_STEPS && seconds >= TIME_STEP * MANY_STEPS as f64;
+    (is_long && 10 * steady.count() >= 9 * steps.len()).then_some(mean)
 }
 
 /// Distance between the first and last position of a track, m.

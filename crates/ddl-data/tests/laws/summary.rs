@@ -19,9 +19,22 @@ fn implausible_speeds_give_warnings() {
     assert_eq!(warnings(walk(0.52)), []);
     // The same walk at 25 frames per second, and in pixels.
     assert!(matches!(warnings(walk(0.052))[..], [PlausibilityWarning::Slow { brisk }] if brisk < 0.14));
-    assert!(matches!(warnings(walk(30.0))[..], [PlausibilityWarning::Fast { median }, ..] if median > 70.0));
+    assert!(matches!(warnings(walk(30.0))[..], [PlausibilityWarning::Fast { median, .. }, ..] if median > 70.0));
     // A standing pedestrian causes no warning, even with the noise of a tracker.
-    assert_eq!(warnings(walk(0.001)), []);
+    let stand = |id: i64, t: i64| Observation::new(t, PedestrianId(id), [0.03 * (t * t % 7) as f64, id as f64]);
+    assert_eq!(warnings((0..100).map(|t| stand(1, t)).collect()), []);
+    // Those who walk among more who stand show a wrong unit too.
+    let among = [
+        walk(3.0),
+        (0..100).flat_map(|t| [2, 3].map(|id| stand(id, t))).collect(),
+    ];
+    let among = warnings(among.concat())[0].to_string();
+    assert!(
+        among.starts_with("half of the steps of walking pedestrians are faster than 7.5 m/s"),
+        "{among}"
+    );
+    // A steady walk in kilometres.
+    assert!(matches!(warnings(walk(5e-4))[..], [PlausibilityWarning::Crawling { speed }] if speed < 2e-3));
     // Detections once a second, each written ten times.
     let held = |t: i64| Observation::new(t, PedestrianId(1), [1.3 * (t / 10) as f64, 0.0]);
     let held = Recording::new("yard", 4, (0..200).map(held).collect()).unwrap();
