@@ -17,8 +17,8 @@ pub(super) struct Layout {
     pub(super) constant: Option<usize>,
     /// The column that says of which class a row is, and the class of pedestrians.
     pub(super) class: Option<(usize, &'static str)>,
-    /// The column with 1 in rows whose position is not seen.
-    pub(super) lost: Option<usize>,
+    /// The column that marks rows, and whether those marked are left out, or those not marked.
+    pub(super) mark: Option<(usize, bool)>,
     /// Frames a second of all files of the format.
     pub(super) rate: Option<f64>,
     /// What the reader should know.
@@ -57,7 +57,7 @@ const PLAIN: Layout = Layout {
     per_metre: METRES,
     constant: None,
     class: None,
-    lost: None,
+    mark: None,
     rate: None,
     note: None,
 };
@@ -105,7 +105,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
         place: Place::Centre([1, 2, 3, 4]),
         per_metre: None,
         class: Some((9, "Pedestrian")),
-        lost: Some(6),
+        mark: Some((6, true)),
         rate: Some(30.0),
         note: Some(
             "read as annotations of the Stanford Drone Dataset, 30 frames a second: the centres of the boxes of \
@@ -118,6 +118,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
         names: "frame pedestrian left top width height confidence x y z",
         place: Place::Foot([2, 3, 4, 5]),
         per_metre: None,
+        mark: Some((6, false)),
         note: Some("read as tracks of the MOT challenge: the middle of the lower edge of each box"),
         ..PLAIN
     },
@@ -127,6 +128,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
         place: Place::Foot([2, 3, 4, 5]),
         per_metre: None,
         class: Some((7, "1")),
+        mark: Some((6, false)),
         note: Some("read as ground truth of the MOT challenge: the middle of the lower edge of each box of class 1"),
         ..PLAIN
     },

@@ -27,7 +27,8 @@ pub(super) struct RowFilter {
     class: Option<(usize, Option<&'static str>)>,
     /// The column that the user names, its name, and its value in rows that count.
     keep: Option<(usize, String, String)>,
-    lost: Option<usize>,
+    /// The column that marks rows, the mark of those that do not count, and its name.
+    mark: Option<(usize, bool, String)>,
     /// Classes without a known meaning that were read.
     classes: BTreeSet<String>,
     left_out: BTreeMap<String, usize>,
@@ -39,11 +40,12 @@ impl RowFilter {
     pub(super) fn of_header(header: &Header, choice: &ColumnChoice, names: &[String]) -> Self {
         let keep = header.keep.zip(choice.keep.as_ref());
         let keep = keep.map(|(index, (_, value))| (index, names[index].clone(), value.clone()));
-        let class = header.class.filter(|class| Some(*class) != header.keep);
+        let not_kept = |index: &usize| Some(*index) != header.keep;
+        let lost = header.lost.filter(not_kept);
         Self {
-            class: class.map(|index| (index, None)),
+            class: header.class.filter(not_kept).map(|index| (index, None)),
             keep,
-            lost: header.lost,
+            mark: lost.map(|index| (index, true, names[index].clone())),
             ..Self::default()
         }
     }
@@ -66,32 +68,60 @@ impl RowFilter {
             }
         };
         let kept = keep.as_ref().map(|(index, ..)| *index);
-        // Another class may be kept.
+        // Others may be kept.
         let class = layout.class.filter(|(index, _)| Some(*index) != kept);
+        let mark = layout.mark.filter(|(index, _)| Some(*index) != kept);
+        let name = |index: usize| layout.names.split(' ').nth(index).unwrap_or_default().to_owned();
         Ok(Self {
             class: class.map(|(index, class)| (index, Some(class))),
             keep,
-            lost: layout.lost,
+            mark: mark.map(|(index, left_out)| (index, left_out, name(index))),
             ..Self::default()
         })
     }
 
     /// Whether a row with these fields counts; `place` are the columns of its position. If not, it is counted.
-    pub(super) fn counts(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> bool {
-        let Some(mut why) = self.reason(fields, place) else {
-            return true;
-        };
+    ///
+    /// # Errors
+    /// A field that marks the row, counted from 0, and what is wrong with it.
+    pub(super) fn counts(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Result<bool, (usize, String)> {
+        let why = self.reason(fields, place)?;
+        let counts = why.is_none();
+        if let Some(why) = why {
+            self.leave_out(why);
+        }
+        Ok(counts)
+    }
+
+    /// Counts a row that is left out for this reason.
+    pub(super) fn leave_out(&mut self, mut why: String) {
         if self.left_out.len() >= MOST_REASONS && !self.left_out.contains_key(&why) {
             "of other values".clone_into(&mut why);
         }
         *self.left_out.entry(why).or_default() += 1;
-        false
     }
 
-    fn reason(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Option<String> {
-        if self.lost.is_some_and(|index| is_lost(&fields[index])) {
-            return Some("marked lost".to_owned());
+    fn reason(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Result<Option<String>, (usize, String)> {
+        if let Some((index, left_out, name)) = &self.mark {
+            let found = &*fields[*index];
+            let is_marked = is_marked(found).ok_or_else(|| {
+                let [name, found] = [name, found].map(field::quoted);
+                let wanted = format!("{name} must be 0, 1, yes or no, found {found:?}");
+                (*index, format!("{wanted}; --keep {name}=VALUE chooses rows by it"))
+            })?;
+            if is_marked == *left_out {
+                let why = if is_marked {
+                    "marked lost".to_owned()
+                } else {
+                    format!("with {name} 0")
+                };
+                return Ok(Some(why));
+            }
         }
+        Ok(self.other_reason(fields, place))
+    }
+
+    fn other_reason(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Option<String> {
         if let Some((index, name, value)) = &self.keep
             && !are_alike(&fields[*index], value)
         {
@@ -160,8 +190,13 @@ fn has_word_of(names: &str, class: &str) -> bool {
     words(class).iter().any(|word| is_one_of(names, word))
 }
 
-fn is_lost(mark: &str) -> bool {
-    mark.eq_ignore_ascii_case("true") || mark.parse().is_ok_and(|mark: f64| mark != 0.0)
+fn is_marked(mark: &str) -> Option<bool> {
+    let number = mark.parse().ok().filter(|mark: &f64| !mark.is_nan());
+    match mark.to_ascii_lowercase().as_str() {
+        "yes" | "y" | "true" | "t" => Some(true),
+        "no" | "n" | "false" | "f" | "" => Some(false),
+        _ => number.map(|mark| mark != 0.0),
+    }
 }
 
 /// Whether two values are the same word or the same number.

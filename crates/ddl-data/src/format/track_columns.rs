@@ -347,10 +347,11 @@ impl TrackColumns {
         if !self.is_whole(fields) {
             return Err(FilePlace::line(line).wrong(self.wrong_count(fields.len())));
         }
-        if !self.filter.counts(fields, self.header.place.columns()) {
+        let place = |index: usize| FilePlace::field(line, index + 1);
+        let counts = self.filter.counts(fields, self.header.place.columns());
+        if !counts.map_err(|(index, problem)| place(index).wrong(problem))? {
             return Ok(None);
         }
-        let place = |index: usize| FilePlace::field(line, index + 1);
         let unit = match self.header.time {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Frame | TimeColumn::Time => None,
