@@ -126,15 +126,18 @@ fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFi
         let allowed = choice.refuse_for(format);
         allowed.map_err(|problem| FilePlace::line(1).wrong(problem))?;
     }
-    let without_notes = |rows, rate| TextFile {
+    let without_columns = |rows, left_out: Option<String>, rate| TextFile {
         rows,
-        notes: Vec::new(),
+        notes: left_out.into_iter().collect(),
         rate,
         columns: None,
     };
     match format {
-        Format::StarCsv => Ok(without_notes(star_csv::parse(text)?, None)),
-        Format::TrajNet => trajnet::parse(text).map(|(rows, stated)| without_notes(rows, stated.frames_a_second)),
+        Format::StarCsv => Ok(without_columns(star_csv::parse(text)?, None, None)),
+        Format::TrajNet => {
+            let (rows, others) = trajnet::parse(text)?;
+            Ok(without_columns(rows, others.filter.left_out(), others.frames_a_second))
+        }
         Format::Vsp => vsp::parse(text, choice),
         Format::Edinburgh => edinburgh::parse(text, choice),
         _ => text::parse(text, format, choice),

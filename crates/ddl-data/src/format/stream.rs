@@ -76,8 +76,8 @@ pub struct FrameReader<R> {
     comments: String,
     /// Frame numbers per second, if a comment states it.
     frame_rate: Option<f64>,
-    /// The frame rate stated by scenes.
-    rate: trajnet::SceneRate,
+    /// What lines of TrajNet++ without an observation say.
+    others: trajnet::OtherLines,
     words: Numbering,
     /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
     numbers: BTreeSet<(Option<SceneName>, Box<str>)>,
@@ -146,7 +146,7 @@ impl<R: BufRead> FrameReader<R> {
             choice: ColumnChoice::default(),
             comments: String::new(),
             frame_rate: None,
-            rate: trajnet::SceneRate::default(),
+            others: trajnet::OtherLines::default(),
             words: Numbering::remembering(MOST_WORDS),
             numbers: BTreeSet::new(),
             scenes: BTreeMap::new(),
@@ -225,7 +225,8 @@ impl<R: BufRead> FrameReader<R> {
     pub fn take_notes(&mut self) -> Vec<String> {
         match &mut self.kind {
             Some(Kind::Text(columns)) => columns.new_notes(),
-            _ => Vec::new(),
+            Some(Kind::TrajNet) => self.others.filter.news(),
+            None => Vec::new(),
         }
     }
 
@@ -236,7 +237,7 @@ impl<R: BufRead> FrameReader<R> {
 
     /// Rows of a pedestrian per second, if a line so far states it: the `fps` of TrajNet++ scenes.
     pub fn rate(&self) -> Option<f64> {
-        self.rate.frames_a_second
+        self.others.frames_a_second
     }
 
     /// The next line without its line ending; `None` at the end of the file.
@@ -320,7 +321,7 @@ impl<R: BufRead> FrameReader<R> {
         };
         let row = match kind {
             Kind::Text(columns) => columns.row_of_line(text, line),
-            Kind::TrajNet => trajnet::observation(text, line, &mut self.rate),
+            Kind::TrajNet => trajnet::observation(text, line, &mut self.others),
         };
         row.map_err(in_file)
     }

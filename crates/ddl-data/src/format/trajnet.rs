@@ -12,17 +12,18 @@ use crate::clock::TimeUnit;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::when;
+use crate::format::row_filter::RowFilter;
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
-/// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
+/// The observed tracks. Forecast tracks, which have a `prediction_number`, are left out. Identical rows count once.
 #[expect(clippy::float_cmp, reason = "a repeated track is written with the same digits")]
-pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, SceneRate), Misread> {
+pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), Misread> {
     let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
-    let mut rate = SceneRate::default();
+    let mut others = OtherLines::default();
     for (index, text) in text.lines().enumerate() {
-        let Some(row) = observation(text, index + 1, &mut rate)? else {
+        let Some(row) = observation(text, index + 1, &mut others)? else {
             continue;
         };
         let key = match &row.pedestrian {
@@ -57,17 +58,18 @@ pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, SceneRate), Misread> {
                        --forecasts`";
         return Err(FilePlace::line(1).wrong(problem));
     }
-    Ok((rows, rate))
+    Ok((rows, others))
 }
 
-/// Frames per second, as stated by the scenes of a file.
+/// What lines without an observation say: the frames per second of the scenes, and which are left out.
 #[derive(Debug, Default)]
-pub(super) struct SceneRate {
+pub(super) struct OtherLines {
     line: usize,
     pub(super) frames_a_second: Option<f64>,
+    pub(super) filter: RowFilter,
 }
 
-impl SceneRate {
+impl OtherLines {
     #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
     fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), String> {
         let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
@@ -132,13 +134,13 @@ fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value
     Value::deserialize(deserializer).map(Some)
 }
 
-/// The observation of a line, if it holds one. The rate of a scene line is recorded.
-pub(super) fn observation(text: &str, line: usize, rate: &mut SceneRate) -> Result<Option<TrackRow>, Misread> {
+/// The observation of a line, if it holds one. What another line says is kept.
+pub(super) fn observation(text: &str, line: usize, others: &mut OtherLines) -> Result<Option<TrackRow>, Misread> {
     let place = FilePlace::line(line);
-    place.read(row(text, place, rate))
+    place.read(row(text, place, others))
 }
 
-fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<TrackRow>, String> {
+fn row(text: &str, place: FilePlace, others: &mut OtherLines) -> Result<Option<TrackRow>, String> {
     if text.trim().is_empty() {
         return Ok(None);
     }
@@ -149,13 +151,18 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
     }
     let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
     // A scene that is not an object shows that the file is of another kind.
-    if let Some(scene) = fields::<SceneFields>(line.scene, "scene")? {
-        rate.take(&scene, place.line_number())?;
+    let scene = fields::<SceneFields>(line.scene, "scene")?;
+    if let Some(scene) = &scene {
+        others.take(scene, place.line_number())?;
     }
     let Some(track) = fields::<TrackFields>(line.track, "track")? else {
+        if scene.is_none() {
+            others.filter.leave_out("without a track or scene".to_owned());
+        }
         return Ok(None);
     };
     if track.prediction_number.is_some() {
+        others.filter.leave_out("with a prediction_number".to_owned());
         return Ok(None);
     }
     let unit = match (&track.t, &track.f) {
