@@ -1,6 +1,6 @@
 //! Conversion between numpy arrays and positions.
 
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use ddl::data::{COORDINATE_LIMIT, HORIZON, Position};
 use numpy::ndarray::IntoDimension;
 use numpy::{
@@ -39,12 +39,11 @@ pub(crate) fn tracks(
     nan: bool,
 ) -> PyResult<Vec<Vec<Position>>> {
     let shape = array.shape();
-    if shape[1..] != [steps, 2] {
-        return Err(PyValueError::new_err(format!(
-            "{name} must have the shape (n, {steps}, 2): n pedestrians, {steps} positions 0.4 s apart, x and y in \
+    ensure!(
+        shape[1..] == [steps, 2],
+        "{name} must have the shape (n, {steps}, 2): n pedestrians, {steps} positions 0.4 s apart, x and y in \
              metres; found {shape:?}"
-        )));
-    }
+    );
     let positions = flat(name, array)?.as_chunks::<2>().0;
     for (index, position) in positions.iter().enumerate() {
         let unseen = nan && position.iter().all(|coordinate| coordinate.is_nan());
@@ -68,11 +67,10 @@ pub(crate) fn tracks(
 /// `(n, 2)` positions (metres), all finite.
 pub(crate) fn points(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Position>> {
     let shape = array.shape();
-    if shape[1] != 2 {
-        return Err(PyValueError::new_err(format!(
-            "{name} must have the shape (n, 2): x and y in metres; found {shape:?}"
-        )));
-    }
+    ensure!(
+        shape[1] == 2,
+        "{name} must have the shape (n, 2): x and y in metres; found {shape:?}"
+    );
     let points = flat(name, array)?.as_chunks::<2>().0;
     if let Some(row) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(PyValueError::new_err(format!(
@@ -90,28 +88,25 @@ pub(crate) fn forecast(
     goals: Option<&PyReadonlyArray3<'_, f64>>,
 ) -> PyResult<ddl::Forecast> {
     let shape = paths.shape();
-    if shape[2..] != [HORIZON, 2] {
-        return Err(PyValueError::new_err(format!(
-            "paths must have the shape (n, k, 12, 2): n pedestrians, k hypotheses, 12 positions 0.4 s apart, x and y \
+    ensure!(
+        shape[2..] == [HORIZON, 2],
+        "paths must have the shape (n, k, 12, 2): n pedestrians, k hypotheses, 12 positions 0.4 s apart, x and y \
              in metres; found {shape:?}"
-        )));
-    }
+    );
     let [n, k] = [shape[0], shape[1]];
-    if let Some(goals) = goals
-        && goals.shape() != [n, k, 2]
-    {
-        return Err(PyValueError::new_err(format!(
+    if let Some(goals) = goals {
+        ensure!(
+            goals.shape() == [n, k, 2],
             "goals must have the shape ({n}, {k}, 2) of these paths; found {:?}",
             goals.shape()
-        )));
+        );
     }
-    if let Some(weights) = weights
-        && weights.shape() != [n, k]
-    {
-        return Err(PyValueError::new_err(format!(
+    if let Some(weights) = weights {
+        ensure!(
+            weights.shape() == [n, k],
             "weights must have the shape ({n}, {k}) of these paths; found {:?}",
             weights.shape()
-        )));
+        );
     }
     let positions = flat("paths", paths)?.as_chunks::<2>().0.to_vec();
     let weights = match weights {

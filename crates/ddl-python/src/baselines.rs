@@ -1,6 +1,6 @@
 //! Baselines: forecasts that need no training.
 
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use crate::forecasts::{EmptyFields, parts};
 use crate::observed::Observed;
 use ddl::data::{Completeness, Window};
@@ -54,12 +54,11 @@ pub(crate) fn baseline<'py>(
 fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResult<Vec<WeightedGoals>> {
     let goals = goals.ok_or_else(|| PyValueError::new_err("goals are missing"))?;
     let shape = goals.shape();
-    if shape[0] != scene.rows.len() || shape[2] != 2 || shape[1] == 0 {
-        return Err(PyValueError::new_err(format!(
-            "goals must have the shape ({}, k, 2); found {shape:?}",
-            scene.rows.len()
-        )));
-    }
+    ensure!(
+        shape[0] == scene.rows.len() && shape[2] == 2 && shape[1] > 0,
+        "goals must have the shape ({}, k, 2); found {shape:?}",
+        scene.rows.len()
+    );
     let k = shape[1];
     let flat = crate::arrays::flat("goals", goals)?.as_chunks::<2>().0;
     let mut of_window = vec![None; scene.window.as_ref().map_or(0, Window::len)];

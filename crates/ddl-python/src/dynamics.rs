@@ -1,7 +1,7 @@
 //! Flows to a goal in the plane.
 
 use crate::arrays::{array, flat, points};
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use ddl::dynamics::{
     Attractor, CholeskyMetric, LyapunovCertificate, MetricSchedule, NaturalGradientFlow, StableEuler, State, rollout,
 };
@@ -46,12 +46,11 @@ impl Flow {
     /// `(n, steps + 1, 2)`, with the start first; the distance to the goal falls at each step.
     fn rollout(&self, py: Python<'_>, start: PyReadonlyArray2<'_, f64>, dt: f64, steps: usize) -> PyResult<Py<PyAny>> {
         let starts = points("start", &start)?;
-        if steps.saturating_mul(starts.len()) > MOST_POSITIONS {
-            return Err(PyValueError::new_err(format!(
-                "{steps} steps from {} places are more than {MOST_POSITIONS} positions",
-                starts.len()
-            )));
-        }
+        ensure!(
+            steps.saturating_mul(starts.len()) <= MOST_POSITIONS,
+            "{steps} steps from {} places are more than {MOST_POSITIONS} positions",
+            starts.len()
+        );
         let walk = |&start: &[f64; 2]| rollout(&self.0, &StableEuler, start.into(), dt, steps);
         let paths = py.detach(|| starts.iter().map(walk).collect::<Result<Vec<_>, _>>());
         let paths: Vec<Vec<Vector2<f64>>> = paths.map_err(of_any)?;
@@ -95,12 +94,11 @@ fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f6
     };
     let symmetric = (xy - yx).abs() <= 1e-12 * (xx.abs() + yy.abs());
     // NaN is not positive
-    if !(symmetric && smallest > 0.0) {
-        return Err(PyValueError::new_err(format!(
-            "P[{step}] is [[{xx}, {xy}], [{yx}, {yy}]]: it must be symmetric with positive eigenvalues, so that \
+    ensure!(
+        symmetric && smallest > 0.0,
+        "P[{step}] is [[{xx}, {xy}], [{yx}, {yy}]]: it must be symmetric with positive eigenvalues, so that \
              v = -P grad Phi descends"
-        )));
-    }
+    );
     let sigma = 0.5 * smallest;
     let rest = matrix - Matrix2::from_diagonal_element(sigma);
     let factor = rest.cholesky().map(|factor| factor.l());

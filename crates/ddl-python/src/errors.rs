@@ -7,6 +7,16 @@ use pyo3::exceptions::{
 use std::error::Error;
 use std::io::ErrorKind;
 
+/// Raises a `ValueError` with this text unless the condition holds.
+macro_rules! ensure {
+    ($holds:expr, $($text:tt)+) => {
+        if !$holds {
+            return Err(pyo3::exceptions::PyValueError::new_err(format!($($text)+)));
+        }
+    };
+}
+pub(crate) use ensure;
+
 /// An error of input or output becomes the `OSError` of its kind, every other error a `ValueError` with the same
 /// message.
 pub(crate) fn raised(error: impl Into<ddl::DdlError>) -> PyErr {

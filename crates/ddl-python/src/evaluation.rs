@@ -1,7 +1,7 @@
 //! The benchmark for custom models: windows without their futures, the forecasts for them, and their scores.
 
 use crate::arrays::{Paths, array, forecast, numbers};
-use crate::errors::{of_any, raised};
+use crate::errors::{ensure, of_any, raised};
 use crate::forecasts::names;
 use crate::interruptible::{Stop, User, run, run_on};
 use crate::model::Model;
@@ -167,12 +167,11 @@ impl TestSet {
     ) -> PyResult<()> {
         let protocol: Protocol = parsed(protocol)?;
         let made = forecast(&paths, weights.as_ref(), goals.as_ref())?;
-        if made.pedestrians() != pedestrians {
-            return Err(PyValueError::new_err(format!(
-                "{} pedestrians were forecast, but {pedestrians} were given",
-                made.pedestrians()
-            )));
-        }
+        ensure!(
+            made.pedestrians() == pedestrians,
+            "{} pedestrians were forecast, but {pedestrians} were given",
+            made.pedestrians()
+        );
         let admitted = protocol.admit(vec![made], name);
         admitted.map(drop).map_err(of_any)
     }

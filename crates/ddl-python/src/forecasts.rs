@@ -1,13 +1,12 @@
 //! Forecasts as arrays.
 
 use crate::arrays::{Paths, array, forecast, numbers};
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use crate::moments::Moments;
 use crate::observed::Observed;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, TIME_STEP, Window};
 use ddl::{CertifiedForecast, Forecast, Pace, RegionTable, Spread};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
@@ -206,11 +205,10 @@ pub(crate) fn region_radii<'py>(
     let (past, uncertainty) = observed;
     let table: RegionTable = serde_json::from_str(region_table).map_err(of_any)?;
     let [low, high] = table.range();
-    if !(low..=high).contains(&level) {
-        return Err(PyValueError::new_err(format!(
-            "level must be a probability from {low} to {high}; found {level}"
-        )));
-    }
+    ensure!(
+        (low..=high).contains(&level),
+        "level must be a probability from {low} to {high}; found {level}"
+    );
     let [n, k] = [weights.shape()[0], weights.shape()[1]];
     let rows = weights.as_array();
     let forecast_rows: Vec<usize> = (0..n).filter(|&i| !rows[[i, 0]].is_nan()).collect();

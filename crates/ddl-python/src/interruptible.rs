@@ -1,7 +1,7 @@
 //! Runs work on a thread pool without holding the GIL. Ctrl-C ends the call; a forked child gets its own pool.
 
-use crate::errors::of_any;
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use crate::errors::{ensure, of_any};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -123,9 +123,7 @@ pub(crate) fn wait_for<T>(py: Python<'_>, mut attempt: impl FnMut() -> Option<T>
 
 #[pyfunction]
 pub(crate) fn set_num_threads(threads: usize) -> PyResult<()> {
-    if threads == 0 {
-        return Err(PyValueError::new_err("threads must be at least 1, found 0"));
-    }
+    ensure!(threads > 0, "threads must be at least 1, found 0");
     pool(User::Live, Some(threads))?;
     pool(User::Calls, Some(threads)).map(drop)
 }

@@ -1,7 +1,7 @@
 //! Live forecasts of an observed place.
 
 use crate::arrays::points;
-use crate::errors::{of_any, raised};
+use crate::errors::{ensure, of_any, raised};
 use crate::forecasts::named_parts;
 use crate::interruptible::{User, run_on, wait_for};
 use crate::model::Model;
@@ -133,11 +133,10 @@ impl Live {
         certificates: bool,
         joint: bool,
     ) -> PyResult<Self> {
-        if joint && certificates {
-            return Err(PyValueError::new_err(
-                "live joint futures have no certificates: leave out one of joint and certificates",
-            ));
-        }
+        ensure!(
+            !(joint && certificates),
+            "live joint futures have no certificates: leave out one of joint and certificates"
+        );
         let clock = match fps {
             Some(fps) => clock_of_rate(fps)?,
             None => Clock::with_stamps(TimeUnit::Seconds),
@@ -182,13 +181,12 @@ impl Live {
             },
         };
         let positions = points("xy", &xy)?;
-        if ids.len() != positions.len() {
-            return Err(PyValueError::new_err(format!(
-                "{} ids but {} positions; give one position for each id",
-                ids.len(),
-                positions.len()
-            )));
-        }
+        ensure!(
+            ids.len() == positions.len(),
+            "{} ids but {} positions; give one position for each id",
+            ids.len(),
+            positions.len()
+        );
         let seen = ids.as_array().into_iter().map(|id| PedestrianId(*id));
         let seen: Vec<_> = seen.zip(positions).collect();
         let words = words.into_iter().map(|(id, word)| (PedestrianId(id), word.into()));

@@ -1,7 +1,7 @@
 //! The metrics of the evaluation, on arrays.
 
 use crate::arrays::{Paths, array, forecast, tracks};
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use crate::interruptible::run;
 use ddl::Forecast;
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
@@ -27,13 +27,12 @@ fn window(
         Some(past) => tracks("past", past, OBSERVED, false)?,
         None => truth.iter().map(|future| vec![future[0]; OBSERVED]).collect(),
     };
-    if pasts.len() != truth.len() {
-        return Err(PyValueError::new_err(format!(
-            "past has {} pedestrians, truth has {}",
-            pasts.len(),
-            truth.len()
-        )));
-    }
+    ensure!(
+        pasts.len() == truth.len(),
+        "past has {} pedestrians, truth has {}",
+        pasts.len(),
+        truth.len()
+    );
     let whole: Vec<Vec<Position>> = pasts
         .into_iter()
         .zip(truth)
@@ -128,9 +127,7 @@ pub(crate) fn collisions(
     radius: f64,
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let steps = paths.shape()[1];
-    if steps == 0 {
-        return Err(PyValueError::new_err("paths have no steps"));
-    }
+    ensure!(steps > 0, "paths have no steps");
     let tracks = tracks("paths", &paths, steps, false)?;
     let slices: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
     let n = slices.len();
@@ -158,11 +155,10 @@ pub(crate) fn scores(
     goals: Vec<Option<PyReadonlyArray3<'_, f64>>>,
 ) -> PyResult<String> {
     let lengths = [truth.len(), past.len(), weights.len(), goals.len()];
-    if lengths.iter().any(|length| *length != paths.len()) {
-        return Err(PyValueError::new_err(
-            "paths, truth, past, weights and goals must have the same number of scenes",
-        ));
-    }
+    ensure!(
+        lengths.iter().all(|length| *length == paths.len()),
+        "paths, truth, past, weights and goals must have the same number of scenes"
+    );
     let (mut windows, mut forecasts) = (Vec::new(), Vec::new());
     for (index, paths) in paths.iter().enumerate() {
         windows.push(window(index as i64, &truth[index], Some(&past[index]))?);

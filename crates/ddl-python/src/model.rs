@@ -1,7 +1,7 @@
 //! A trained model.
 
 use crate::arrays::{array, numbers};
-use crate::errors::{of_any, raised};
+use crate::errors::{ensure, of_any, raised};
 use crate::forecasts::{EmptyFields, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, WindowOptions, past_tracks};
@@ -13,7 +13,6 @@ use ddl::{
     RecordingPlayer,
 };
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -39,18 +38,16 @@ struct ForecastOptions {
 impl ForecastOptions {
     fn new(model: &Ddl, samples: usize, certificates: bool, joint: bool) -> PyResult<Self> {
         let hypotheses = model.goal_model().clusters();
-        if samples != 1 && samples != hypotheses {
-            return Err(PyValueError::new_err(format!(
-                "samples must be {hypotheses} (all hypotheses of the model) or 1 (its central forecast); found \
+        ensure!(
+            samples == 1 || samples == hypotheses,
+            "samples must be {hypotheses} (all hypotheses of the model) or 1 (its central forecast); found \
                  {samples}. Weights and regions belong to all {hypotheses}; for fewer, select those with the largest \
                  weights"
-            )));
-        }
-        if joint && samples == 1 {
-            return Err(PyValueError::new_err(
-                "joint futures are of all hypotheses: leave out samples=1",
-            ));
-        }
+        );
+        ensure!(
+            !joint || samples != 1,
+            "joint futures are of all hypotheses: leave out samples=1"
+        );
         Ok(Self {
             one: samples == 1,
             certificates,
@@ -224,12 +221,11 @@ impl Model {
     ) -> PyResult<(String, Option<String>)> {
         let observed = recording.observed(py, WindowOptions::new(false, None, None)?)?;
         let doubt = doubt(&observed);
-        if observed.windows.is_empty() {
-            return Err(PyValueError::new_err(format!(
-                "no pedestrian of the recording can be forecast; check fps, and that positions are in metres{}",
-                doubt.map_or_else(String::new, |doubt| format!(": {doubt}"))
-            )));
-        }
+        ensure!(
+            !observed.windows.is_empty(),
+            "no pedestrian of the recording can be forecast; check fps, and that positions are in metres{}",
+            doubt.map_or_else(String::new, |doubt| format!(": {doubt}"))
+        );
         let player = RecordingPlayer {
             model: &self.0,
             recording: &recording.tracks,

@@ -1,7 +1,7 @@
 //! Frame numbers and times, as the user counts them.
 
 use crate::arrays::array;
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use ddl::data::{Clock, FrameNumber, TimeUnit};
 use numpy::datetime::{Datetime, units::Microseconds};
 use pyo3::exceptions::PyValueError;
@@ -82,11 +82,10 @@ impl Moments {
 
 /// The clock of frame numbers that count so many a second.
 pub(crate) fn clock_of_rate(fps: f64) -> PyResult<Clock> {
-    if !(fps.is_finite() && fps > 0.0) {
-        return Err(PyValueError::new_err(format!(
-            "fps must be a finite number above 0, the frames per second; found {fps}"
-        )));
-    }
+    ensure!(
+        fps.is_finite() && fps > 0.0,
+        "fps must be a finite number above 0, the frames per second; found {fps}"
+    );
     Clock::with_frame_time(fps.recip()).map_err(of_any)
 }
 

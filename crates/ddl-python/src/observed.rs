@@ -1,10 +1,9 @@
 //! What was observed of a scene or recording, as windows to forecast from.
 
 use crate::arrays::tracks;
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use ddl::data::{Completeness, LiveError, LiveTracks, Misfit, OBSERVED, PedestrianId, Position, Window};
 use numpy::PyReadonlyArray3;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// The windows that the user asks for.
@@ -22,13 +21,12 @@ pub(crate) struct WindowOptions {
 impl WindowOptions {
     pub(crate) fn new(whole: bool, max_age: Option<f64>, every: Option<f64>) -> PyResult<Self> {
         for (name, seconds) in [("max_age", max_age), ("every", every)] {
-            if let Some(seconds) = seconds
-                && !(0.0..=LiveTracks::LONGEST_GAP).contains(&seconds)
-            {
-                return Err(PyValueError::new_err(format!(
+            if let Some(seconds) = seconds {
+                ensure!(
+                    (0.0..=LiveTracks::LONGEST_GAP).contains(&seconds),
                     "{name} must be a number of seconds from 0 to {}; found {seconds}",
                     LiveTracks::LONGEST_GAP
-                )));
+                );
             }
         }
         Ok(Self {

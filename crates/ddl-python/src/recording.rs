@@ -1,7 +1,7 @@
 //! Recordings: tracks of one place, from files or columns.
 
 use crate::arrays::array;
-use crate::errors::{of_any, raised};
+use crate::errors::{ensure, of_any, raised};
 use crate::interruptible::run;
 use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
 use crate::observed::WindowOptions;
@@ -32,18 +32,16 @@ pub(crate) struct Recording {
 
 /// The rows on the clock of the rate that the user gives, or else the file.
 fn on_clock(rows: Tracks, fps: Option<f64>, frame_step: Option<i64>) -> PyResult<Recording> {
-    if fps.is_some() && frame_step.is_some() {
-        return Err(PyValueError::new_err(
-            "give fps or frame_step, not both: fps counts frames per second, frame_step frames in 0.4 s",
-        ));
-    }
+    ensure!(
+        fps.is_none() || frame_step.is_none(),
+        "give fps or frame_step, not both: fps counts frames per second, frame_step frames in 0.4 s"
+    );
     let unit = rows.time_unit();
     let is_given = fps.is_some() || frame_step.is_some();
-    if unit.is_some() && is_given {
-        return Err(PyValueError::new_err(
-            "the rows have times, and fps or frame_step gives a rate of frame numbers; leave it out",
-        ));
-    }
+    ensure!(
+        unit.is_none() || !is_given,
+        "the rows have times, and fps or frame_step gives a rate of frame numbers; leave it out"
+    );
     // `TimedRecording` names seconds per frame in its error; this one names `fps`.
     fps.map(clock_of_rate).transpose()?;
     let given = TrackUnits {
@@ -109,23 +107,21 @@ impl Recording {
     ) -> PyResult<Self> {
         let unit = unit.map(unit_named).transpose()?;
         let lengths = [frame.len(), id.len(), x.len(), y.len()];
-        if lengths.iter().any(|length| *length != lengths[0]) {
-            return Err(PyValueError::new_err(format!(
-                "{}, id, x and y must have one length; found {lengths:?} rows",
-                if unit.is_some() { "time" } else { "frame" }
-            )));
-        }
+        ensure!(
+            lengths.iter().all(|length| *length == lengths[0]),
+            "{}, id, x and y must have one length; found {lengths:?} rows",
+            if unit.is_some() { "time" } else { "frame" }
+        );
         let [frame, id] = [frame.as_array(), id.as_array()];
         let [x, y] = [x.as_array(), y.as_array()];
         let mut observations = Vec::with_capacity(lengths[0]);
         for row in 0..lengths[0] {
             for (column, value) in [("x", x[row]), ("y", y[row])] {
-                if !value.is_finite() {
-                    return Err(PyValueError::new_err(format!(
-                        "row {row}, column {column}: {value} is not a finite number in metres; leave out rows in which \
+                ensure!(
+                    value.is_finite(),
+                    "row {row}, column {column}: {value} is not a finite number in metres; leave out rows in which \
                          a pedestrian was not observed"
-                    )));
-                }
+                );
             }
             let position = [x[row], y[row]];
             observations.push(Observation::new(frame[row], PedestrianId(id[row]), position));

@@ -1,7 +1,7 @@
 //! Plans, their risk, and occupancy, from the arrays of joint futures.
 
 use crate::arrays::{Paths, array, flat, forecast, tracks};
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use crate::interruptible::run;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, TIME_STEP, Window};
 use ddl::scene::{Area, Futures, Occupancy, Plan, PlanPoint};
@@ -21,13 +21,12 @@ type JointArrays<'py> = (
 
 /// A plan of the rows t, x, y and radius.
 pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
-    if rows.shape()[1] != 4 {
-        return Err(PyValueError::new_err(format!(
-            "a plan must have the shape (m, 3) or (m, 4): t in seconds after the moment, x, y and radius in \
+    ensure!(
+        rows.shape()[1] == 4,
+        "a plan must have the shape (m, 3) or (m, 4): t in seconds after the moment, x, y and radius in \
              metres; found {:?}",
-            rows.shape()
-        )));
-    }
+        rows.shape()
+    );
     let points = flat("plan", rows)?.as_chunks::<4>().0.iter();
     let point = |&[time, x, y, radius]: &[f64; 4]| PlanPoint {
         time,

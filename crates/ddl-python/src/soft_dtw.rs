@@ -1,7 +1,7 @@
 //! Soft-DTW of numpy arrays of any length, with up to 128 components.
 
 use crate::arrays::array;
-use crate::errors::of_any;
+use crate::errors::{ensure, of_any};
 use crate::interruptible::run;
 use ddl::softdtw::{Neighbour, SearchError, SearchIndex as Index, SoftDtw};
 use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
@@ -42,11 +42,10 @@ macro_rules! in_dimension {
 /// A sequence: an array `(steps, components)`, or `(steps,)` of single numbers. Contiguous float64 is not copied.
 fn sequence<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArray2<'py, f64>> {
     let numpy = object.py().import("numpy")?;
-    if object.hasattr("mask")? && numpy.getattr("ma")?.call_method1("is_masked", (object,))?.is_truthy()? {
-        return Err(PyValueError::new_err(format!(
-            "{name} has masked values: leave out these steps"
-        )));
-    }
+    ensure!(
+        !(object.hasattr("mask")? && numpy.getattr("ma")?.call_method1("is_masked", (object,))?.is_truthy()?),
+        "{name} has masked values: leave out these steps"
+    );
     if let Ok(array) = object.cast::<PyArray2<f64>>()
         && array.is_c_contiguous()
     {
@@ -70,12 +69,11 @@ fn steps<'a, const D: usize>(
     name: &str,
 ) -> PyResult<Cow<'a, [[f64; D]]>> {
     let shape = array.shape();
-    if shape[1] != components {
-        return Err(PyValueError::new_err(format!(
-            "{name} has {} components per step, but {components} are expected; all sequences must have the same number",
-            shape[1]
-        )));
-    }
+    ensure!(
+        shape[1] == components,
+        "{name} has {} components per step, but {components} are expected; all sequences must have the same number",
+        shape[1]
+    );
     let flat = array.as_slice()?;
     if components == D {
         return Ok(Cow::Borrowed(flat.as_chunks::<D>().0));
@@ -153,14 +151,12 @@ pub(crate) fn value_and_gradient(
         let x = steps::<D>(&x, components, "x")?;
         let y = steps::<D>(&y, components, "y")?;
         let (x, y) = (&*x, &*y);
-        if x.len().saturating_mul(y.len()) > MOST_CELLS {
-            return Err(PyValueError::new_err(format!(
-                "a gradient of {} x {} steps exceeds the memory limit ({MOST_CELLS} cells of 24 bytes); use fewer \
-                 steps",
-                x.len(),
-                y.len()
-            )));
-        }
+        ensure!(
+            x.len().saturating_mul(y.len()) <= MOST_CELLS,
+            "a gradient of {} x {} steps exceeds the memory limit ({MOST_CELLS} cells of 24 bytes); use fewer steps",
+            x.len(),
+            y.len()
+        );
         let computed = unlocked(py, x.len() * y.len(), || {
             if normalised {
                 dtw.normalised_and_gradient(x, y)
