@@ -66,8 +66,8 @@ impl ColumnChoice {
                     roles.join(", ")
                 ));
             };
-            if self.roles.iter().any(|(other, _)| *other == role) {
-                return Err(format!("gives {part:?} a second time"));
+            if self.roles.iter().any(|(other, taken)| *other == role || *taken == name) {
+                return Err(format!("gives the role or the column of {part:?} a second time"));
             }
             self.roles.push((role, name));
             self.time_unit = self.time_unit.or(time_unit);
