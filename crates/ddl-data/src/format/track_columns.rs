@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use ddl_core::Position;
 
-use crate::clock::TimeUnit;
+use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::LengthUnit;
 use crate::format::comments::{is_comment, names_in_comment};
@@ -358,10 +358,13 @@ impl TrackColumns {
         };
         let time = self.separator.with_point(&fields[self.header.frame]);
         let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
-        if let Some(index) = self.header.nanoseconds {
-            let rest = place(index).read(field::integer(&fields[index], "nanoseconds"))?;
-            if !(0..1_000_000_000).contains(&rest) {
-                return Err(place(index).wrong(format!("{rest} nanoseconds are no part of a second")));
+        if frame % STAMPS_A_SECOND != 0 {
+            self.assumed_unit = self.assumed_unit.filter(|&unit| unit != WHOLE_TIMES);
+        }
+        if let Some((index, name, a_second)) = self.header.rest {
+            let rest = place(index).read(field::integer(&fields[index], name))?;
+            if !(0..a_second).contains(&rest) {
+                return Err(place(index).wrong(format!("{rest} {name} are no part of a second")));
             }
             frame += rest / 1000;
         }

@@ -288,6 +288,14 @@ fn commas_in_numbers_and_units_of_times_are_read() {
         german.observations()[0],
         Observation::new(0, PedestrianId(1), [3.75, -0.5])
     );
+    // Whole times are told, unless a later one has a fraction.
+    for (last, is_told) in [("1", true), ("0.4", false)] {
+        let text = format!("time,id,x,y\n0,1,0,0\n{last},1,1,0\n");
+        let mut stream = FrameReader::new(text.as_bytes(), "t");
+        stream.next_frame().unwrap();
+        let notes = read("t.csv", &text).unwrap().notes().to_vec();
+        assert_eq!((&notes, notes.len()), (&stream.take_notes(), usize::from(is_told)));
+    }
     let choice = ColumnChoice::default().with_columns("time_ms=stamp").unwrap();
     assert_eq!(choice.to_string(), "time_ms=stamp");
     let text = b"stamp,id,x,y,z\n1500,1,2,3,1.7\n";
