@@ -70,6 +70,12 @@ const TIME_UNITS: [(&str, TimeUnit); 4] = [
     ("us microseconds", TimeUnit::Microseconds),
     ("ns nanoseconds", TimeUnit::Nanoseconds),
 ];
+/// Parts of a second: their names, and how many make one.
+const RESTS: [(&str, (&str, i64)); 3] = [
+    ("nanosec nanosecs nsec nsecs", ("nanoseconds", 1_000_000_000)),
+    ("microsec microsecs usec usecs", ("microseconds", 1_000_000)),
+    ("millisec millisecs msec msecs", ("milliseconds", 1_000)),
+];
 const LENGTH_UNITS: [(&str, LengthUnit); 7] = [
     ("m metre metres meter meters", LengthUnit::PerMetre(1.0)),
     ("cm centimetres centimeters", LengthUnit::PerMetre(100.0)),
@@ -86,6 +92,9 @@ pub(super) enum LengthUnit {
     PerMetre(f64),
     Pixels,
 }
+
+/// A column of a part of a second, its unit, and how many make one.
+pub(super) type Rest = (usize, &'static str, i64);
 
 /// A column of a header.
 pub(super) struct Named {
@@ -195,16 +204,23 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
     (whole.is_some() || named.time_unit.is_some() || named.length.is_some()).then_some(named)
 }
 
-/// The column of nanoseconds beside this one of whole seconds, as in stamps of ROS: its first words are the same.
-/// The words of the names are written together.
-pub(super) fn nanoseconds_beside(names: &[String], seconds: usize) -> Option<usize> {
+/// The column of a part of a second beside this one of whole seconds, as in stamps of ROS: its first words are the
+/// same. The words of the names are written together.
+pub(super) fn rest_beside(names: &[String], seconds: usize) -> Option<Rest> {
     let stem = names[seconds]
         .strip_suffix("secs")
         .or(names[seconds].strip_suffix("sec"))?;
-    let is_rest = |end: &str| is_one_of("nanosec nanosecs nsec nsecs", end);
-    names
-        .iter()
-        .position(|name| name.strip_prefix(stem).is_some_and(is_rest))
+    names.iter().enumerate().find_map(|(index, name)| {
+        let (unit, a_second) = unit_of(&RESTS, name.strip_prefix(stem)?)?;
+        Some((index, unit, a_second))
+    })
+}
+
+/// Whether the last word of a name is a unit of time.
+pub(super) fn is_of_time(name: &str) -> bool {
+    let words = words(name);
+    let unit = words.last().map_or("", String::as_str);
+    unit_of(&TIME_UNITS, unit).is_some() || unit_of(&RESTS, unit).is_some()
 }
 
 /// The words of a name in small letters: `trackId`, `track_id` and `Track ID` have the words track and id.

@@ -4,7 +4,7 @@ use crate::clock::TimeUnit;
 
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{
-    LengthUnit, Named, Role, chosen_as, is_known, is_one_of, named, nanoseconds_beside, words,
+    LengthUnit, Named, Rest, Role, chosen_as, is_known, is_one_of, named, rest_beside, words,
 };
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
@@ -37,8 +37,8 @@ pub(super) enum TimeColumn {
 pub(super) struct Header {
     pub(super) time: TimeColumn,
     pub(super) frame: usize,
-    /// Nanoseconds beside whole seconds, which are the first column.
-    pub(super) nanoseconds: Option<usize>,
+    /// A part of a second beside whole seconds, which are the first column.
+    pub(super) rest: Option<Rest>,
     pub(super) pedestrian: usize,
     pub(super) place: Place,
     /// Units of length per metre; `None` for pixels.
@@ -95,7 +95,7 @@ impl Header {
                 .find(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
             // x and y that are given stand for a box as well, and a box for x and y.
             let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
-            let by_name = if has_no_time && nanoseconds_beside(&plain, index).is_some() {
+            let by_name = if has_no_time && rest_beside(&plain, index).is_some() {
                 Some(chosen_as(Role::Time, index, name))
             } else {
                 named(index, name)
@@ -108,11 +108,11 @@ impl Header {
             }
         }
         let mut header = roles.header(choice)?;
-        if let Some(rest) = nanoseconds_beside(&plain, header.frame) {
+        if let Some(rest) = rest_beside(&plain, header.frame) {
             header.time = TimeColumn::Known(Some(TimeUnit::Seconds));
-            header.nanoseconds = Some(rest);
-            header.unread.retain(|&index| index != rest);
-            let [first, rest] = [header.frame, rest].map(|index| quoted(names[index]));
+            header.rest = Some(rest);
+            header.unread.retain(|&index| index != rest.0);
+            let [first, rest] = [header.frame, rest.0].map(|index| quoted(names[index]));
             header
                 .remarks
                 .push(format!("the times are {first} and {rest} together"));
@@ -179,7 +179,7 @@ impl Roles<'_> {
                 (_, Some(unit)) => TimeColumn::Known(Some(unit)),
             },
             frame: time.index,
-            nanoseconds: None,
+            rest: None,
             pedestrian: pedestrian.index,
             place,
             has_unit: is_point && matches!(of_length, Some(LengthUnit::PerMetre(_))),

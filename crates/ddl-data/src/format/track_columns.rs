@@ -6,7 +6,7 @@ use ddl_core::Position;
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::format::choice::ColumnChoice;
-use crate::format::column_names::LengthUnit;
+use crate::format::column_names::{LengthUnit, is_of_time};
 use crate::format::comments::{is_comment, names_in_comment};
 use crate::format::field::{self, PedestrianField};
 use crate::format::header::{Header, TimeColumn, first_of, is_camera};
@@ -149,7 +149,7 @@ impl TrackColumns {
                 _ => TimeColumn::Frame,
             },
             frame: layout.frame,
-            nanoseconds: None,
+            rest: None,
             pedestrian: layout.pedestrian,
             place: layout.place,
             per_metre: choice.unit.map_or(layout.per_metre, LengthUnit::per_metre),
@@ -366,7 +366,7 @@ impl TrackColumns {
             if !(0..a_second).contains(&rest) {
                 return Err(place(index).wrong(format!("{rest} {name} are no part of a second")));
             }
-            frame += rest / 1000;
+            frame += rest * STAMPS_A_SECOND / a_second;
         }
         let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
@@ -477,7 +477,12 @@ impl TrackColumns {
             [Some(first), Some(again)] => first != again && ![first, again].iter().any(|it| it.contains('.')),
             _ => false,
         };
-        let apart: Vec<usize> = self.header.unread.iter().copied().filter(tells).collect();
+        let unread = self
+            .header
+            .unread
+            .iter()
+            .filter(|&&index| !is_of_time(&self.names[index]));
+        let apart: Vec<usize> = unread.copied().filter(tells).collect();
         let of_first = apart.first().map(|&index| [&first[index], &again[index]]);
         let value = of_first.and_then(|values| values.into_iter().find(|value| !value.is_empty()));
         value.map_or_else(String::new, |value| {
