@@ -182,11 +182,10 @@ impl TrackColumns {
         if !self.is_comment(text, &fields) {
             self.look_at(fields.get(self.header.frame).map(|field| &**field));
         }
-        let row = self.row_of(text, &fields, line);
-        if row.is_err() {
+        self.row_of(text, &fields, line).map_err(|wrong| {
             (self.header.time, self.assumed_unit) = before;
-        }
-        row
+            wrong.and(self.words_in(&fields))
+        })
     }
 
     /// Whether a line after the first row is a comment. A row may begin with the sign, in the name of a pedestrian.
@@ -244,7 +243,8 @@ impl TrackColumns {
                 self.look_at(Some(time));
                 return Ok(None);
             }
-            read.extend(self.row_of(text, &fields, line)?);
+            let row = self.row_of(text, &fields, line);
+            read.extend(row.map_err(|wrong| wrong.and(self.words_in(&fields)))?);
         }
         Ok(Some(read))
     }
@@ -402,6 +402,17 @@ impl TrackColumns {
             position,
             place: FilePlace::line(line),
         }))
+    }
+
+    /// What else a line may be that is read as a row.
+    fn words_in(&self, fields: &[Cow<'_, str>]) -> &'static str {
+        if fields.iter().eq(&self.names) {
+            "; the line repeats the names of the columns: delete it, or make a file of each part"
+        } else if self.is_whole(fields) && !fields.iter().any(|field| field.parse::<f64>().is_ok()) {
+            "; the line holds no number: delete it if it names units (--unit gives that of the positions)"
+        } else {
+            ""
+        }
     }
 
     fn position(&self, fields: &[Cow<'_, str>], line: usize) -> Result<Position, Misread> {
