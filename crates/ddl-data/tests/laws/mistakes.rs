@@ -1,13 +1,16 @@
 //! Mistakes in files and streams are named with their place: the cases of `mistakes.txt`.
 
-use ddl_data::{ColumnChoice, DataError, Format, FrameReader, parse_recording};
+use ddl_data::{DataError, Format, FrameReader, parse_columns};
+
+use crate::formats::chosen;
 
 const CASES: &str = include_str!("mistakes.txt");
 
 fn of_file(name: &str, text: &str, format: Option<Format>) -> Option<DataError> {
-    let guessed = || Format::guess(name.as_ref(), text.as_bytes(), &ColumnChoice::default());
+    let (name, choice) = chosen(name);
+    let guessed = || Format::guess(name.as_ref(), text.as_bytes(), &choice);
     match format.map_or_else(guessed, Ok) {
-        Ok(format) => parse_recording(text.as_bytes(), "f", format).err(),
+        Ok(format) => parse_columns(text.as_bytes(), "f", format, &choice).err(),
         Err(error) => Some(error.into()),
     }
 }

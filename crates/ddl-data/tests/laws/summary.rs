@@ -24,14 +24,13 @@ fn implausible_speeds_give_warnings() {
     let stand = |id: i64, t: i64| Observation::new(t, PedestrianId(id), [0.03 * (t * t % 7) as f64, id as f64]);
     assert_eq!(warnings((0..100).map(|t| stand(1, t)).collect()), []);
     // Those who walk among more who stand show a wrong unit too.
-    let among = [
-        walk(3.0),
-        (0..100).flat_map(|t| [2, 3].map(|id| stand(id, t))).collect(),
-    ];
-    let among = warnings(among.concat())[0].to_string();
+    let crowd = (0..100).flat_map(|t| [2, 3].map(|id| stand(id, t)));
+    let among = warnings(walk(3.0).into_iter().chain(crowd).collect());
     assert!(
-        among.starts_with("half of the steps of walking pedestrians are faster than 7.5 m/s"),
-        "{among}"
+        among[0]
+            .to_string()
+            .starts_with("half of the steps of walking pedestrians"),
+        "{among:?}"
     );
     // A steady walk in kilometres.
     assert!(matches!(warnings(walk(5e-4))[..], [PlausibilityWarning::Crawling { speed }] if speed < 2e-3));
