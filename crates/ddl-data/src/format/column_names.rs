@@ -50,8 +50,8 @@ const NAMES: [(Role, &str); 14] = [
     ),
     (
         Role::Class,
-        "class classname classid cls label type agenttype actortype objecttype objectclass objtype vehicletype \
-         roadusertype category categoryname",
+        "class classname classid classlabel cls label type agenttype agentclass actortype objecttype objectclass \
+         objectcategory objtype detclass trackclass vehicletype roadusertype category categoryname",
     ),
     (Role::Scene, "scene"),
     (Role::Lost, "lost"),

@@ -1,20 +1,25 @@
 //! The header of a table: what its columns hold, by the names that people give them.
 
-use crate::clock::TimeUnit;
+use std::borrow::Cow;
 
+use crate::clock::TimeUnit;
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{
     LengthUnit, Named, Rest, Role, chosen_as, is_known, is_one_of, named, rest_beside, words,
 };
 use crate::format::field::quoted;
-use crate::format::layouts::Place;
+use crate::format::layouts::{Layout, Place};
 
 /// Names of columns that tell the recordings of one file apart.
-const GROUPS: &str = "recording recordingid video videoid videoname clipid sequenceid sequencename session sessionid \
-                      runid trial trialid experiment experimentid caseid floor floorid camera cameraid cam camid \
-                      sceneid scenename";
-/// Of these, those that a stream may call `scene`.
-const CAMERAS: &str = "camera cameraid cam camid sceneid scenename";
+const GROUPS: &str = "recording recordingid video videoid videoname clip clipid sequenceid sequencename session \
+                      sessionid runid take takeid trial trialid experiment experimentid caseid scenario scenarioid \
+                      logid dataset floor floorid locationid site siteid camera cameraid cameraname cam camid sceneid \
+                      scenename scenetoken";
+/// Names of columns that may do so, or count or measure something.
+const PARTS: &str = "seq sequence run file log source segment segmentid part partid zone zoneid room area location \
+                     place map city vid date day device deviceid sensor sensorid station";
+/// Of the first, those that a stream may call `scene`.
+const CAMERAS: &str = "camera cameraid cameraname cam camid sceneid scenename scenetoken";
 /// Most faults of columns that say the same in a message.
 const MOST_FAULTS: usize = 5;
 /// Number of unknown columns that a message names.
@@ -125,6 +130,41 @@ impl Header {
             header.has_unit = unit != LengthUnit::Pixels;
         }
         Ok(header)
+    }
+
+    /// Moves names of columns that may tell rows apart before those of measurements, as the first row shows.
+    pub(super) fn name_words_first(&mut self, fields: &[Cow<'_, str>], names: &[String]) {
+        if self.unread.len() > NAMED {
+            let is_number = |index: &usize| fields[*index].parse::<f64>().is_ok();
+            self.unread
+                .sort_by_key(|index| is_number(index) && !is_one_of(PARTS, &words(&names[*index]).concat()));
+        }
+    }
+
+    /// The columns of a layout.
+    pub(super) fn of_layout(layout: &Layout, choice: &ColumnChoice, remarks: Vec<String>) -> Self {
+        let is_timed = layout.names.starts_with("time ");
+        let has_unit = layout.note.is_some() && layout.per_metre.is_some();
+        Self {
+            time: if is_timed {
+                TimeColumn::Known(Some(TimeUnit::Seconds))
+            } else {
+                TimeColumn::Frame
+            },
+            frame: layout.frame,
+            rest: None,
+            pedestrian: layout.pedestrian,
+            place: layout.place,
+            per_metre: choice.unit.map_or(layout.per_metre, LengthUnit::per_metre),
+            has_unit: choice.unit.map_or(has_unit, |unit| unit != LengthUnit::Pixels),
+            scene: None,
+            class: None,
+            keep: None,
+            lost: None,
+            groups: layout.constant.into_iter().collect(),
+            unread: Vec::new(),
+            remarks,
+        }
     }
 }
 

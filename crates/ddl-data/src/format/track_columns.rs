@@ -143,29 +143,7 @@ impl TrackColumns {
         if layout.format == Format::SocialGan && separator != Separator::Blanks {
             remarks.push(UNNAMED.to_owned());
         }
-        let header = Header {
-            time: match names[layout.frame].as_str() {
-                "time" => TimeColumn::Known(Some(TimeUnit::Seconds)),
-                _ => TimeColumn::Frame,
-            },
-            frame: layout.frame,
-            rest: None,
-            pedestrian: layout.pedestrian,
-            place: layout.place,
-            per_metre: choice.unit.map_or(layout.per_metre, LengthUnit::per_metre),
-            has_unit: choice
-                .unit
-                .map_or(layout.note.is_some() && layout.per_metre.is_some(), |unit| {
-                    unit != LengthUnit::Pixels
-                }),
-            scene: None,
-            class: None,
-            keep: None,
-            lost: None,
-            groups: layout.constant.into_iter().collect(),
-            unread: Vec::new(),
-            remarks,
-        };
+        let header = Header::of_layout(layout, choice, remarks);
         Ok(Self {
             format: layout.format,
             filter: RowFilter::of_layout(layout, choice)?,
@@ -249,8 +227,8 @@ impl TrackColumns {
         Ok(Some(read))
     }
 
-    /// Makes these the columns of a stream: without a header they are those of `social-gan`, which is told because a
-    /// stream has no other evidence; further columns may change at any time, but those of cameras must be named scene.
+    /// Makes these the columns of a stream. Without a header they are those of `social-gan`, which is told. Further
+    /// columns may change at any time, but those of cameras must be named scene.
     pub(super) fn begin_stream(&mut self, line: usize) -> Result<(), Misread> {
         if self.format == Format::SocialGan && self.separator == Separator::Blanks {
             self.header.remarks.push(UNNAMED.to_owned());
@@ -324,11 +302,10 @@ impl TrackColumns {
             TimeColumn::Time => time.map(field::unit_of),
             TimeColumn::Frame => time.is_some_and(field::has_fraction).then_some(TimeUnit::Seconds),
         };
-        let is_whole = |time: &str| !time.contains('.');
         self.assumed_unit = match self.header.time {
             TimeColumn::Frame if unit.is_some() => Some(FRACTIONS),
             TimeColumn::Time => match unit {
-                Some(TimeUnit::Seconds) if time.is_some_and(is_whole) => Some(WHOLE_TIMES),
+                Some(TimeUnit::Seconds) if time.is_some_and(|time| !time.contains('.')) => Some(WHOLE_TIMES),
                 Some(TimeUnit::Milliseconds) => Some("the times have 13 digits: they are read as milliseconds"),
                 Some(TimeUnit::Microseconds) => Some("the times have 16 digits: they are read as microseconds"),
                 Some(TimeUnit::Nanoseconds) => Some("the times have 19 digits: they are read as nanoseconds"),
@@ -389,6 +366,7 @@ impl TrackColumns {
         self.check_constants(fields, line)?;
         if !std::mem::replace(&mut self.has_rows, true) {
             self.check_sizes(fields, line)?;
+            self.header.name_words_first(fields, &self.names);
         }
         let scene = self.header.scene.map(|index| {
             let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
@@ -485,15 +463,11 @@ impl TrackColumns {
         let [first, again] = rows.map(|row| self.separator.fields(row, 1).unwrap_or_default());
         // A number with a fraction is a measurement, not the name of a recording.
         let tells = |index: &usize| match [first.get(*index), again.get(*index)] {
+            _ if is_of_time(&self.names[*index]) => false,
             [Some(first), Some(again)] => first != again && ![first, again].iter().any(|it| it.contains('.')),
             _ => false,
         };
-        let unread = self
-            .header
-            .unread
-            .iter()
-            .filter(|&&index| !is_of_time(&self.names[index]));
-        let apart: Vec<usize> = unread.copied().filter(tells).collect();
+        let apart: Vec<usize> = self.header.unread.iter().copied().filter(tells).collect();
         let of_first = apart.first().map(|&index| [&first[index], &again[index]]);
         let value = of_first.and_then(|values| values.into_iter().find(|value| !value.is_empty()));
         value.map_or_else(String::new, |value| {
