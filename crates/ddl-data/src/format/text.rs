@@ -15,6 +15,8 @@ use crate::format::track_columns::TrackColumns;
 const MOST_RESERVED: usize = 1 << 20;
 /// Lines of titles above the header that are looked at.
 const MOST_TITLES: usize = 50;
+/// Fields of a line that may be a header below titles.
+const MOST_FIELDS: usize = 1000;
 /// Bytes of the shortest row.
 const SHORTEST_ROW: usize = 7;
 
@@ -47,7 +49,7 @@ fn header_below(text: &str, line: usize, choice: &ColumnChoice) -> Option<usize>
     for (number, text) in lines.take(MOST_TITLES).filter(|(_, text)| !text.trim().is_empty()) {
         let fields = Separator::of(text).fields(text, number).unwrap_or_default();
         let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
-        if number > line && Header::of(&names, choice).is_ok() {
+        if number > line && names.len() <= MOST_FIELDS && Header::of(&names, choice).is_ok() {
             return Some(number);
         }
         let numbers = names.iter().filter(|name| name.parse::<f64>().is_ok()).count();
