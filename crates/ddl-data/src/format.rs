@@ -93,6 +93,7 @@ pub fn parse_columns(
 ) -> Result<Recording, DataError> {
     let read = rows_of(bytes, format, choice).map_err(|error| error.in_file(origin))?;
     let columns = read.columns.as_ref();
+    let scene = read.rows.first().and_then(|row| row.scene.clone());
     let advice_on_same = |lines| TextFile::advice_on_same(columns, bytes, lines);
     let mut recording = rows::into_recording(read.rows, origin, advice_on_same)?;
     // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
@@ -102,6 +103,8 @@ pub fn parse_columns(
         (rate, None) => rate.map(|rate| rate / recording.frame_step() as f64),
     };
     recording.notes = read.notes;
+    let of_scene = scene.map(|scene| format!("all rows are of scene {scene}; forecasts of a file do not name it"));
+    recording.notes.extend(of_scene);
     Ok(recording)
 }
 

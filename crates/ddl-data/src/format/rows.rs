@@ -70,9 +70,9 @@ fn observations(
     if rows.is_empty() {
         return Err(FilePlace::line(1).wrong(EMPTY));
     }
-    if let Some(row) = rows.iter().find(|row| row.scene.is_some()) {
-        let problem = "a file holds one recording, but this one names scenes; pipe it to `ddl forecast -`, or make a \
-                       file of each scene without the column";
+    if let Some(row) = rows.iter().find(|row| row.scene != rows[0].scene) {
+        let problem = "a file holds one recording, but this row is of another scene than the first; pipe it to `ddl \
+                       forecast -`, make a file of each scene, or read one scene of a table (--keep scene=NAME)";
         return Err(row.place.wrong(problem));
     }
     if let Some(row) = rows.iter().find(|row| row.unit != unit) {
