@@ -106,7 +106,7 @@ pub(super) fn has_fraction(text: &str) -> bool {
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum PedestrianField {
-    /// A number, and its spelling where that is not plain digits, such as `12.0`.
+    /// A number, and its spelling where that is not plain digits, such as `012`.
     Number(i64, Option<Box<str>>),
     /// A name that is not a number.
     Word(Box<str>),
@@ -125,7 +125,11 @@ impl PedestrianField {
 /// A pedestrian: a number as [`integer`] parses it, or a word. Fractions, NaN, infinite numbers and empty fields are
 /// refused. Whole numbers that are too large are words.
 pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, String> {
-    let text = trimmed(text);
+    // Tables of other programs have 12.0 for 12.
+    let text = match trimmed(text).split_once('.') {
+        Some((whole, zeros)) if zeros.trim_matches('0').is_empty() && whole.parse::<i64>().is_ok() => whole,
+        _ => trimmed(text),
+    };
     match integer(text, name) {
         Ok(number) => {
             let is_plain = matches!(PedestrianName::of_text(text), PedestrianName::Number(_));
@@ -216,11 +220,12 @@ mod tests {
             assert_eq!(integer(text, "frame"), Ok(12), "{text}");
         }
         let read = |text: &str| pedestrian(text, "pedestrian");
-        for (text, number) in [(" 12.0", 12), ("-0", 0), ("007", 7)] {
+        assert_eq!(read(" 12.0"), Ok(PedestrianField::Number(12, None)));
+        for (text, number) in [(" 1.2e1", 12), ("-0", 0), ("007", 7)] {
             let as_written = Some(text.trim().into());
             assert_eq!(read(text), Ok(PedestrianField::Number(number, as_written)));
         }
-        for text in ["7f3e", "12e4567", "5e20", "9007199254740992", " a b "] {
+        for text in ["7f3e", "cam.0", "12e4567", "5e20", "9007199254740992", " a b "] {
             assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));
         }
         assert_eq!(read("a\u{1b}[2Jb"), Ok(PedestrianField::Word("a\\u{1b}[2Jb".into())));
