@@ -45,11 +45,11 @@ pub(super) fn integer(text: &str, name: &str) -> Result<i64, String> {
 pub(super) fn frame(text: &str, name: &str, unit: Option<TimeUnit>) -> Result<i64, String> {
     match unit {
         None => integer(text, name),
-        Some(unit) => time(text.trim(), unit),
+        Some(unit) => time(text.trim(), name, unit),
     }
 }
 
-fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
+fn time(text: &str, name: &str, unit: TimeUnit) -> Result<i64, String> {
     let Some((a_second, _)) = unit.a_second() else {
         let stamp = date(text).ok_or_else(|| not_a_time("time", &quoted(text), DATE))?;
         let is_near = stamp.abs() < FRAME_LIMIT;
@@ -66,9 +66,15 @@ fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
     let wanted = || format!("a number, or in all rows {DATE}");
     let stamp = stamp.ok_or_else(|| not_a_time("time", &quoted(text), &wanted()))?;
     if stamp.abs() >= FRAME_LIMIT as f64 {
-        let finer = "not within 285 years of 1970; if it counts milliseconds, call the column time_ms, or time_us or \
-                     time_ns; divide ticks of 100 ns";
-        return Err(format!("time {} is {finer}", quoted(text)));
+        let finer = match name {
+            "frame" => "call the column time_ms, or time_us or time_ns",
+            _ => "write seconds",
+        };
+        let limit = "is not within 285 years of 1970; if it counts milliseconds";
+        return Err(format!(
+            "time {} {limit}, {finer}; divide ticks of 100 ns",
+            quoted(text)
+        ));
     }
     Ok(stamp as i64)
 }

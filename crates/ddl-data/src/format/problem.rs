@@ -6,7 +6,7 @@ use crate::clock::{Clock, TimeUnit};
 
 pub(super) const EMPTY: &str = "the file holds no observation; is it empty or cut off?";
 pub(super) const MIXED_TIMES: &str = "the time is of another kind than that of the first row; give all rows frame \
-    numbers, seconds, or dates, and call a column of seconds time";
+    numbers, seconds, or dates; a table calls a column of seconds time";
 pub(super) const NOT_UTF8: &str = "the text is not UTF-8; export the file as plain UTF-8 or ASCII text";
 
 pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String {
@@ -16,7 +16,7 @@ pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String 
 pub(super) fn duplicate(pedestrian: impl Display, (frame, unit): (i64, Option<TimeUnit>), first_line: usize) -> String {
     let coarse = unit.map_or(
         "",
-        |_| ", or take frame numbers if the times are too coarse (--columns frame=NAME)",
+        |_| ", or take frame numbers if the times are too coarse (of a table: --columns frame=NAME)",
     );
     let when = when(frame, unit);
     format!("pedestrian {pedestrian} is in {when} already (line {first_line}); keep one row{coarse}")
@@ -43,6 +43,7 @@ pub(super) fn not_integer(name: &str, found: &str) -> String {
     let is_number = found.parse::<f64>().is_ok_and(f64::is_finite);
     let advice = match name {
         "frame" if is_number && found.contains('.') => "; if it is a time in seconds, call the column time",
+        "track.f" if is_number && found.contains('.') => "; if it is a time in seconds, write it as track.t",
         _ => advice_on_number(found),
     };
     format!("{name} must be {wanted}, found {found:?}{advice}")
