@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ddl_core::{PedestrianId, PedestrianNames, Position};
 
-use crate::clock::TimeUnit;
+use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::error::DataError;
 use crate::format::field::PedestrianField;
 use crate::format::numbering::Numbering;
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate};
 use crate::observation::Observation;
+use crate::observe::LONGEST_GAP;
 use crate::recording::Recording;
 use crate::scene_name::SceneName;
 
@@ -114,10 +115,14 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     (placed.collect(), PedestrianNames::new(names))
 }
 
-/// How often the frames of a file in order of time begin again: its parts hold several pedestrians each, in order of
-/// time. Files in another order, such as one pedestrian after the other, have none.
+/// How often the frames of a file begin again: by more than rows in disorder, 2 s or five frames of those in it.
 fn restarts(rows: &[TrackRow]) -> usize {
-    let parts: Vec<&[TrackRow]> = rows.chunk_by(|before, after| before.frame <= after.frame).collect();
+    let rises = rows.array_windows().map(|[before, row]| row.frame - before.frame);
+    let disorder = match rows.first().and_then(|row| row.unit) {
+        Some(_) => (LONGEST_GAP * STAMPS_A_SECOND as f64) as i64,
+        None => 5 * rises.filter(|rise| *rise > 0).min().unwrap_or(1),
+    };
+    let parts: Vec<&[TrackRow]> = rows.chunk_by(|row, next| row.frame - next.frame <= disorder).collect();
     // Pedestrians take turns, instead of following each other.
     let is_crowd = |part: &&[TrackRow]| {
         let changes = part
@@ -126,11 +131,30 @@ fn restarts(rows: &[TrackRow]) -> usize {
         let pedestrians: BTreeSet<&PedestrianField> = part.iter().map(|row| &row.pedestrian).collect();
         changes.count() >= pedestrians.len()
     };
-    if parts.len() > 1 && parts.iter().all(is_crowd) {
-        parts.len() - 1
-    } else {
-        0
+    match parts.len() {
+        0 | 1 => 0,
+        count if parts.iter().all(is_crowd) => count - 1,
+        _ => restarts_of_tracks(rows, disorder),
     }
+}
+
+/// The same of a file in another order, such as one pedestrian after the other: the rows of each are in order of time,
+/// or are parts of which the next lies before the last.
+fn restarts_of_tracks(rows: &[TrackRow], disorder: i64) -> usize {
+    let mut tracks: BTreeMap<&PedestrianField, Vec<i64>> = BTreeMap::new();
+    for row in rows {
+        tracks.entry(&row.pedestrian).or_default().push(row.frame);
+    }
+    let restarts = tracks.values().map(|frames| {
+        let parts: Vec<&[i64]> = frames.chunk_by(|frame, next| frame < next).collect();
+        let begins_again =
+            |[part, next]: &[&[i64]; 2]| next.last() < part.first() && part[part.len() - 1] - next[0] > disorder;
+        parts.array_windows().all(begins_again).then_some(parts.len() - 1)
+    });
+    restarts
+        .reduce(|most, count| Some(most?.max(count?)))
+        .flatten()
+        .unwrap_or(0)
 }
 
 /// Sorts the rows by frame and pedestrian, and finds the first of the file that repeats both of another.

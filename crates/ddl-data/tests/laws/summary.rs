@@ -1,6 +1,6 @@
 //! Summaries of recordings and their plausibility checks.
 
-use ddl_data::{Observation, PedestrianId, PlausibilityWarning, Recording};
+use ddl_data::{Format, Observation, PedestrianId, PlausibilityWarning, Recording, parse_recording};
 
 /// A pedestrian that walks along x at a speed in metres per frame, for 100 frames.
 fn walk(metres_a_frame: f64) -> Vec<Observation> {
@@ -128,4 +128,23 @@ fn shares_of_a_picture_are_doubted() {
     };
     assert!(is_doubted(crowd(1.0, 0.05)));
     assert!(!is_doubted(crowd(10.0, 0.05)) && !is_doubted(crowd(1.0, 0.001)));
+}
+
+/// A counter and a time of day that wrap, of one and in the order of tracks, and parts of a crowd; but no disorder.
+#[test]
+fn frames_that_begin_again_are_counted() {
+    for (rows, count) in [
+        ("98,1 99,1 0,1 1,1", 1),
+        ("98,1 99,1 0,1 1,1 2,2 3,2", 1),
+        ("0,1 1,1 20,1 0,2 9,2 60,2", 0),
+        ("0,1 0,2 9,1 9,2 60,1 60,2 0,3 0,4 60,3 60,4", 1),
+        ("3,1 1,2 2,3 6,1 4,2 9,3 7,2", 0),
+        ("30,1 9,1 50,1 2,1", 0),
+    ] {
+        for head in ["frame", "time"] {
+            let text = format!("{head},id,x,y\n{},0,0\n", rows.replace(' ', ",0,0\n"));
+            let recording = parse_recording(text.as_bytes(), "f", Format::Table).unwrap();
+            assert_eq!(recording.summary().restarts, count, "{text}");
+        }
+    }
 }
