@@ -129,17 +129,15 @@ fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFi
         let allowed = choice.refuse_for(format);
         allowed.map_err(|problem| FilePlace::line(1).wrong(problem))?;
     }
-    let without_columns = |rows, left_out: Option<String>, rate| TextFile {
-        rows,
-        notes: left_out.into_iter().collect(),
-        rate,
-        columns: None,
-    };
     match format {
-        Format::StarCsv => Ok(without_columns(star_csv::parse(text)?, None, None)),
+        Format::StarCsv => Ok(TextFile::without_columns(star_csv::parse(text)?, None, None)),
         Format::TrajNet => {
             let (rows, others) = trajnet::parse(text)?;
-            Ok(without_columns(rows, others.filter.left_out(), others.frames_a_second))
+            Ok(TextFile::without_columns(
+                rows,
+                others.filter.left_out(),
+                others.frames_a_second,
+            ))
         }
         Format::Vsp => vsp::parse(text, choice),
         Format::Edinburgh => edinburgh::parse(text, choice),

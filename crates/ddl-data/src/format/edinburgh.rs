@@ -60,10 +60,5 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
     let scale = (!choice.is_mapped).then(|| SCALE.to_owned());
     let left_out = (repeated > 0).then(|| format!("rows left out: {repeated} at the same frame as the one before"));
     let notes = std::iter::once(NOTE.to_owned()).chain(scale).chain(left_out);
-    Ok(TextFile {
-        rows,
-        notes: notes.collect(),
-        rate: Some(RATE),
-        columns: None,
-    })
+    Ok(TextFile::without_columns(rows, notes, Some(RATE)))
 }

@@ -51,7 +51,7 @@ pub(super) struct Header {
     /// Whether the names, the layout or the user say that positions are in metres or parts of them.
     pub(super) has_unit: bool,
     pub(super) scene: Option<usize>,
-    /// The column of classes, and the one by which the user keeps rows; `None` in a layout, whose filter knows them.
+    /// The column of classes, and the one by which the user keeps rows; a layout knows its classes.
     pub(super) class: Option<usize>,
     pub(super) keep: Option<usize>,
     pub(super) lost: Option<usize>,
@@ -142,10 +142,22 @@ impl Header {
     }
 
     /// The columns of a layout.
-    pub(super) fn of_layout(layout: &Layout, choice: &ColumnChoice, remarks: Vec<String>) -> Self {
+    ///
+    /// # Errors
+    /// When the user keeps rows by a column that is not there.
+    pub(super) fn of_layout(layout: &Layout, choice: &ColumnChoice, remarks: Vec<String>) -> Result<Self, String> {
+        let index = |name: &String| {
+            let mut names = layout.names.split(' ');
+            names
+                .position(|column| column.eq_ignore_ascii_case(name))
+                .ok_or_else(|| {
+                    let names = layout.names.replace(' ', ", ");
+                    format!("there is no column {:?} among {names}", quoted(name))
+                })
+        };
         let is_timed = layout.names.starts_with("time ");
         let has_unit = layout.note.is_some() && layout.per_metre.is_some();
-        Self {
+        Ok(Self {
             time: if is_timed {
                 TimeColumn::Known(Some(TimeUnit::Seconds))
             } else {
@@ -159,12 +171,12 @@ impl Header {
             has_unit: choice.unit.map_or(has_unit, |unit| unit != LengthUnit::Pixels),
             scene: None,
             class: None,
-            keep: None,
+            keep: choice.keep.as_ref().map(|(name, _)| index(name)).transpose()?,
             lost: None,
             groups: layout.constant.into_iter().collect(),
             unread: Vec::new(),
             remarks,
-        }
+        })
     }
 }
 

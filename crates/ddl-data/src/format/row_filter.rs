@@ -37,47 +37,25 @@ pub(super) struct RowFilter {
 }
 
 impl RowFilter {
-    pub(super) fn of_header(header: &Header, choice: &ColumnChoice, names: &[String]) -> Self {
+    /// The filter of columns with these names, which are those of a layout or a header's own.
+    pub(super) fn of(header: &Header, layout: Option<&Layout>, choice: &ColumnChoice, names: &[String]) -> Self {
         let keep = header.keep.zip(choice.keep.as_ref());
-        let keep = keep.map(|(index, (_, value))| (index, names[index].clone(), value.clone()));
-        let not_kept = |index: &usize| Some(*index) != header.keep;
-        let lost = header.lost.filter(not_kept);
+        let (class, mark) = match layout {
+            Some(layout) => (layout.class.map(|(index, class)| (index, Some(class))), layout.mark),
+            None => (
+                header.class.map(|index| (index, None)),
+                header.lost.map(|index| (index, true)),
+            ),
+        };
+        // What marks rows or their class may be what is kept.
+        let not_kept = |index: usize| Some(index) != header.keep;
+        let mark = mark.filter(|&(index, _)| not_kept(index));
         Self {
-            class: header.class.filter(not_kept).map(|index| (index, None)),
-            keep,
-            mark: lost.map(|index| (index, true, names[index].clone())),
+            class: class.filter(|&(index, _)| not_kept(index)),
+            keep: keep.map(|(index, (_, value))| (index, names[index].clone(), value.clone())),
+            mark: mark.map(|(index, left_out)| (index, left_out, names[index].clone())),
             ..Self::default()
         }
-    }
-
-    /// # Errors
-    /// When the user keeps rows by a column that is not there.
-    pub(super) fn of_layout(layout: &Layout, choice: &ColumnChoice) -> Result<Self, String> {
-        let keep = match &choice.keep {
-            None => None,
-            Some((name, value)) => {
-                let index = layout
-                    .names
-                    .split(' ')
-                    .position(|column| column.eq_ignore_ascii_case(name));
-                let index = index.ok_or_else(|| {
-                    let names = layout.names.replace(' ', ", ");
-                    format!("there is no column {:?} among {names}", field::quoted(name))
-                })?;
-                Some((index, name.clone(), value.clone()))
-            }
-        };
-        let kept = keep.as_ref().map(|(index, ..)| *index);
-        // Others may be kept.
-        let class = layout.class.filter(|(index, _)| Some(*index) != kept);
-        let mark = layout.mark.filter(|(index, _)| Some(*index) != kept);
-        let name = |index: usize| layout.names.split(' ').nth(index).unwrap_or_default().to_owned();
-        Ok(Self {
-            class: class.map(|(index, class)| (index, Some(class))),
-            keep,
-            mark: mark.map(|(index, left_out)| (index, left_out, name(index))),
-            ..Self::default()
-        })
     }
 
     /// Whether a row with these fields counts; `place` are the columns of its position. If not, it is counted.
@@ -85,12 +63,7 @@ impl RowFilter {
     /// # Errors
     /// A field that marks the row, counted from 0, and what is wrong with it.
     pub(super) fn counts(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Result<bool, (usize, String)> {
-        let why = self.reason(fields, place)?;
-        let counts = why.is_none();
-        if let Some(why) = why {
-            self.leave_out(why);
-        }
-        Ok(counts)
+        Ok(self.reason(fields, place)?.map(|why| self.leave_out(why)).is_none())
     }
 
     /// Counts a row that is left out for this reason.

@@ -30,6 +30,19 @@ pub(super) struct TextFile {
 }
 
 impl TextFile {
+    pub(super) fn without_columns(
+        rows: Vec<TrackRow>,
+        notes: impl IntoIterator<Item = String>,
+        rate: Option<f64>,
+    ) -> Self {
+        Self {
+            rows,
+            notes: notes.into_iter().collect(),
+            rate,
+            columns: None,
+        }
+    }
+
     /// What else may be done about a pedestrian that is twice in one frame, in these lines.
     pub(super) fn advice_on_same(columns: Option<&TrackColumns>, bytes: &[u8], lines: [usize; 2]) -> String {
         let text = String::from_utf8_lossy(bytes);

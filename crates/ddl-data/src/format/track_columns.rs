@@ -89,7 +89,10 @@ impl TrackColumns {
         {
             let header = Header::of(&names.iter().map(String::as_str).collect::<Vec<_>>(), choice);
             let header = header.map_err(|(_, problem)| FilePlace::line(1).wrong(problem))?;
-            return Ok((Self::named(header, names, Separator::of_numbers(first), choice), false));
+            return Ok((
+                Self::named(header, names, Separator::of_numbers(first), None, choice),
+                false,
+            ));
         }
         let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
         let header = Header::of(&names, choice).map_err(|(field, problem)| {
@@ -97,15 +100,21 @@ impl TrackColumns {
             place.wrong(problem)
         })?;
         let names = names.iter().map(|&name| name.to_owned()).collect();
-        Ok((Self::named(header, names, separator, choice), true))
+        Ok((Self::named(header, names, separator, None, choice), true))
     }
 
-    fn named(header: Header, names: Vec<String>, separator: Separator, choice: &ColumnChoice) -> Self {
-        let filter = RowFilter::of_header(&header, choice, &names);
+    fn named(
+        header: Header,
+        names: Vec<String>,
+        separator: Separator,
+        layout: Option<&Layout>,
+        choice: &ColumnChoice,
+    ) -> Self {
+        let filter = RowFilter::of(&header, layout, choice, &names);
         let constants = header.groups.iter().map(|&index| (index, None)).collect();
         let unnamed = names.iter().rev().take_while(|name| name.is_empty()).count();
         Self {
-            format: Format::Table,
+            format: layout.map_or(Format::Table, |layout| layout.format),
             separator,
             needed: names.len() - unnamed,
             names,
@@ -123,33 +132,27 @@ impl TrackColumns {
 
     fn laid_out(layout: &Layout, separator: Separator, choice: &ColumnChoice) -> Result<Self, String> {
         if let Some((_, name)) = choice.roles.first() {
-            return Err(format!(
-                "there is no header, so no column is called {name:?}; write one above the rows"
-            ));
+            let problem = "there is no header, so no column is called";
+            return Err(format!("{problem} {name:?}; write one above the rows"));
         }
         let names: Vec<String> = layout.names.split(' ').map(str::to_owned).collect();
         let is_class = |index: usize| layout.class.is_some_and(|(class, _)| class == index);
-        let of_row = [layout.frame, layout.pedestrian];
-        let numbers = (0..names.len())
-            .filter(|index| !of_row.contains(index) && !layout.place.columns().contains(index) && !is_class(*index));
+        let of_row = [&[layout.frame, layout.pedestrian], layout.place.columns()].concat();
+        let numbers = (0..names.len()).filter(|index| !of_row.contains(index) && !is_class(*index));
         let is_as_usual = choice.unit.is_none() && choice.keep.is_none();
         let mut remarks = Vec::new();
         if !is_as_usual {
-            remarks.push(format!(
-                "read as {}, with the unit and the rows asked for",
-                layout.format
-            ));
+            let asked = "with the unit and the rows asked for";
+            remarks.push(format!("read as {}, {asked}", layout.format));
         }
         if layout.format == Format::SocialGan && separator != Separator::Blanks {
             remarks.push(UNNAMED.to_owned());
         }
-        let header = Header::of_layout(layout, choice, remarks);
+        let header = Header::of_layout(layout, choice, remarks)?;
         Ok(Self {
-            format: layout.format,
-            filter: RowFilter::of_layout(layout, choice)?,
             numbers: numbers.collect(),
             note: layout.note.filter(|_| is_as_usual),
-            ..Self::named(header, names, separator, choice)
+            ..Self::named(header, names, separator, Some(layout), choice)
         })
     }
 

@@ -69,12 +69,8 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
     let left_out = (lost > 0)
         .then(|| format!("left out: {lost} splines of one control point, or parts between two more than 20 s apart"));
     let pixels = (!choice.is_mapped).then(|| PIXELS.to_owned());
-    Ok(TextFile {
-        rows,
-        notes: std::iter::once(NOTE.to_owned()).chain(pixels).chain(left_out).collect(),
-        rate: Some(RATE),
-        columns: None,
-    })
+    let notes = std::iter::once(NOTE.to_owned()).chain(pixels).chain(left_out);
+    Ok(TextFile::without_columns(rows, notes, Some(RATE)))
 }
 
 /// The positions of all splines, and the number of parts that are left out.
