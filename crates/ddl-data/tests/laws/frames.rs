@@ -134,7 +134,7 @@ proptest! {
         as_json: bool,
     ) {
         let names = ["hall", "Tür 2", "7"];
-        let who = ["1", "17.0", "7f3e", "4"];
+        let who = ["1", "017", "7f3e", "4"];
         let line = |&(scene, frame, id): &(usize, i64, usize)| {
             let (scene, who, x) = (names[scene], who[id], 0.5 * frame as f64);
             if as_json {
