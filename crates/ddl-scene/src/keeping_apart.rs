@@ -35,8 +35,8 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
                 continue;
             }
             let partners = partners.get_or_insert_with(|| neighbours(people.len(), pairs));
-            // Those beyond `most` are not counted: a candidate that collides as often as now is of no use. Nor are those
-            // that touch already, which no path mends.
+            // Those beyond `most` are not counted: a candidate that collides as often as now is of no use. Those that
+            // touch already are not counted either: no path mends that.
             let collisions = |i: usize, path: &Path, most: usize| {
                 let with = |&&(index, other): &&(usize, usize)| {
                     let pair = &pairs[index];

@@ -143,7 +143,9 @@ proptest! {
 
     /// Who sees a plan keeps its distance from the middle, however the limit is divided into a radius and a distance.
     #[test]
-    fn radius_and_distance_are_one((starts, velocities, scales, rows) in scenes(), within in 0.0..0.6f64, r in 0.0..0.6f64) {
+    fn radius_and_distance_are_one(
+        (starts, velocities, scales, rows) in scenes(), within in 0.0..0.6f64, r in 0.0..0.6f64,
+    ) {
         let crowd = futures(&starts, &velocities, &WEIGHTS, &scales);
         let of = |radius: f64| plan(&rows.iter().map(|&[t, x, y, _]| [t, x, y, radius]).collect::<Vec<_>>());
         let plans = [of(r), of(0.0)];
