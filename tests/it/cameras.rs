@@ -240,7 +240,7 @@ fn what_does_not_fit_scenes_is_refused() {
     let place = Place::with_model();
     std::fs::create_dir(place.at("memories")).unwrap();
     place.write("scenes.csv", HEADER.to_owned() + &interleaved(as_csv));
-    place.all_fail(&["forecast scenes.csv --model run => a file holds one recording, but this row is of another scene"]);
+    place.all_fail(&["forecast scenes.csv --model run => a file holds one recording, but this row is of another"]);
     let tracks = own_tracks::csv(&own_tracks::three_pedestrians(9));
     let finished = place.run_on(&tracks, &format!("{LINE} --memory memories"));
     let words = "memories is a folder, and the lines name no scenes";

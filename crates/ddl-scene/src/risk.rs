@@ -3,7 +3,8 @@
 //! In future k, of the weight `w_k`, pedestrian i is at `path_ik(t) + s_i(t) z_i`: the deviation `z_i` from its path is
 //! distributed by Student's t ([`Spread`](ddl_core::Spread)), lasts for the whole future, grows with the scale `s_i(t)`
 //! and is independent of those of other pedestrians. At the moment itself the scale is the deviation of the last
-//! observed position, 0 for a row; between the steps and the rows of the plan everything moves on straight lines. With the share `P_ik` of deviations that come close,
+//! observed position, 0 for a row; between the steps and the rows of the plan everything moves on straight lines. With
+//! the share `P_ik` of deviations that come close,
 //!
 //! ```text
 //! P(somebody) = sum_k w_k (1 - prod_i (1 - P_ik)),    P(pedestrian i) = sum_k w_k P_ik
