@@ -104,8 +104,8 @@ pub enum PlausibilityWarning {
     )]
     Jump { fastest: Fastest, when: String },
     #[error(
-        "the frame numbers begin again in the file ({count} x), so its parts lie over each other or far apart; make a file of \
-         each"
+        "the frame numbers begin again in the file ({count} x), so its parts lie over each other or far apart; make a \
+         file of each"
     )]
     Restarted { count: usize },
     #[error(
