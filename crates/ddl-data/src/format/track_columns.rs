@@ -338,9 +338,9 @@ impl TrackColumns {
         };
         let time = self.separator.with_point(&fields[self.header.frame]);
         let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
-        if frame % STAMPS_A_SECOND != 0 {
-            self.assumed_unit = self.assumed_unit.filter(|&unit| unit != WHOLE_TIMES);
-        }
+        self.assumed_unit = self
+            .assumed_unit
+            .filter(|unit| frame % STAMPS_A_SECOND == 0 || *unit != WHOLE_TIMES);
         if let Some((index, name, a_second)) = self.header.rest {
             let rest = place(index).read(field::integer(&fields[index], name))?;
             if !(0..a_second).contains(&rest) {
