@@ -338,9 +338,8 @@ impl TrackColumns {
         };
         let time = self.separator.with_point(&fields[self.header.frame]);
         let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
-        self.assumed_unit = self
-            .assumed_unit
-            .filter(|unit| frame % STAMPS_A_SECOND == 0 || *unit != WHOLE_TIMES);
+        let is_whole = frame % STAMPS_A_SECOND == 0;
+        self.assumed_unit = self.assumed_unit.filter(|unit| is_whole || *unit != WHOLE_TIMES);
         if let Some((index, name, a_second)) = self.header.rest {
             let rest = place(index).read(field::integer(&fields[index], name))?;
             if !(0..a_second).contains(&rest) {
@@ -367,10 +366,7 @@ impl TrackColumns {
             place(index).read(field::number(&fields[index], &self.names[index]))?;
         }
         self.check_constants(fields, line)?;
-        if !std::mem::replace(&mut self.has_rows, true) {
-            self.check_sizes(fields, line)?;
-            self.header.name_words_first(fields, &self.names);
-        }
+        self.look_at_first(fields, line)?;
         let scene = self.header.scene.map(|index| {
             let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
             place(index).read(scene)
@@ -450,8 +446,12 @@ impl TrackColumns {
         Ok(())
     }
 
-    /// Checks that the box of a KITTI row has the size of a person: only then it has a position on the ground.
-    fn check_sizes(&self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
+    /// Looks in the first row for columns of words, and for the size of a person, without which KITTI has no ground.
+    fn look_at_first(&mut self, fields: &[Cow<'_, str>], line: usize) -> Result<(), Misread> {
+        if std::mem::replace(&mut self.has_rows, true) {
+            return Ok(());
+        }
+        self.header.name_words_first(fields, &self.names);
         let is_size = |field: &Cow<'_, str>| field.parse().is_ok_and(|size: f64| size > 0.0 && size < 3.0);
         if self.format != Format::Kitti || !self.filter.is_of_people() || fields[10..13].iter().all(is_size) {
             return Ok(());
