@@ -24,7 +24,7 @@ const JUMP: f64 = 12.0;
 /// even a standing pedestrian moves more than this, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
-/// Speed (m/s) below which nobody walks straight and steadily for that many steps.
+/// A track in metres that goes straight on at a steady speed for `MANY_STEPS` steps is faster than this (m/s).
 const CRAWLING: f64 = 0.1;
 /// Largest side (m) of an area in which three people stand but do not walk, and the share of it that is crossed
 /// in a walk.
@@ -198,7 +198,7 @@ impl Recording {
 
     pub(crate) fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {
         let step = self.frame_step();
-        let (low, high) = self.corners();
+        let [low, high] = self.corners();
         let mut speeds: Vec<(f64, &Observation)> = Vec::new();
         let (mut walking, mut straight): (Vec<f64>, Option<f64>) = (Vec::new(), None);
         let (mut at_zero, mut repeated, mut walked) = ([0; 2], 0, 0);

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP};
+use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP, bounds};
 use serde::Serialize;
 
 use crate::live::Completeness;
@@ -145,14 +145,8 @@ impl Recording {
     }
 
     /// The least and the largest coordinates.
-    pub(crate) fn corners(&self) -> (Position, Position) {
-        let corner = |pick: fn(f64, f64) -> f64, from: f64| {
-            let places = self.observations().iter().map(|seen| seen.position);
-            places.fold([from; 2], |corner, place| {
-                [0, 1].map(|axis| pick(corner[axis], place[axis]))
-            })
-        };
-        (corner(f64::min, f64::INFINITY), corner(f64::max, f64::NEG_INFINITY))
+    pub(crate) fn corners(&self) -> [Position; 2] {
+        bounds(self.observations().iter().map(|seen| seen.position)).unwrap_or_default()
     }
 
     /// A summary of the recording.
@@ -160,7 +154,7 @@ impl Recording {
     pub fn summary(&self) -> Summary {
         let (tracks, step) = (self.tracks(), self.frame_step());
         let (speeds, spacing) = (self.speeds(&tracks), self.usual_spacing().unwrap_or(step));
-        let (low, high) = self.corners();
+        let [low, high] = self.corners();
         let (first_frame, last_frame) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
         let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
         let pairs = tracks.values().flat_map(|track| track.windows(2));

@@ -105,7 +105,7 @@ impl Place {
             self.names = names;
             return Ok(Some((header, None)));
         };
-        // Futures have the random numbers of the names.
+        // The names determine the random numbers of joint futures.
         let window = window.with_names(self.names.clone());
         let forecast = if self.joint {
             let windows = std::slice::from_ref(&window);

@@ -26,17 +26,17 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
     let mut paths = means.clone();
     let collide = |pair: &Pair, first: &Path, second: &Path| collide(people, pair, first, second);
     let still = [[0.0; HORIZON + 1]; 2];
-    let touch: Vec<bool> = pairs.iter().map(|pair| collide(pair, &still, &still)).collect();
-    let mut partners = None;
+    let touching = || -> Vec<bool> { pairs.iter().map(|pair| collide(pair, &still, &still)).collect() };
+    let mut of_all = None;
     for _ in 0..ROUNDS {
         let mut changed = false;
         for pair in pairs {
             if !collide(pair, &paths[pair.first], &paths[pair.second]) {
                 continue;
             }
-            let partners = partners.get_or_insert_with(|| neighbours(people.len(), pairs));
-            // Those beyond `most` are not counted: a candidate that collides as often as now is of no use. Those that
-            // touch already are not counted either: no path mends that.
+            let (partners, touch) = of_all.get_or_insert_with(|| (neighbours(people.len(), pairs), touching()));
+            // Those beyond `most` are not counted: a candidate that collides as often as now is of no use. Pairs
+            // that touch at the moment itself collide on every path, so they are not counted either.
             let collisions = |i: usize, path: &Path, most: usize| {
                 let with = |&&(index, other): &&(usize, usize)| {
                     let pair = &pairs[index];

@@ -16,7 +16,7 @@ mod mass;
 mod tests;
 
 use crate::{error::SceneError, futures::Futures};
-use ddl_core::{HORIZON, Position, TIME_STEP};
+use ddl_core::{HORIZON, Position, TIME_STEP, bounds};
 use mass::MassTable;
 use rayon::prelude::*;
 
@@ -141,13 +141,14 @@ impl Futures {
         let pairs = (0..self.count()).flat_map(|k| (0..self.pedestrians()).map(move |i| (i, k)));
         let paths = pairs.flat_map(|(i, k)| self.forecast().hypothesis(i, k)).copied();
         let places = paths.chain((0..self.pedestrians()).map(|i| self.present(i)));
-        let [mut low, mut high] = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
-        for place in places {
-            low = [0, 1].map(|axis| low[axis].min(place[axis] - margin));
-            high = [0, 1].map(|axis| high[axis].max(place[axis] + margin));
-        }
+        let [low, high] = bounds(places).unwrap_or_default();
+        let low = low.map(|coordinate| coordinate - margin);
         // Somebody who stands still, without a margin.
-        Area::new(low, [0, 1].map(|axis| high[axis].max(low[axis] + cell)), cell)
+        Area::new(
+            low,
+            [0, 1].map(|axis| (high[axis] + margin).max(low[axis] + cell)),
+            cell,
+        )
     }
 
     /// One grid for each time (s after the moment), computed when the iterator arrives at it, in parallel. A body is a

@@ -6,8 +6,8 @@ use ddl_core::{HORIZON, Position, distance};
 use ddl_data::SpatialIndex;
 use std::collections::BTreeSet;
 
-/// Each pedestrian chooses at most this many partners, the nearest ones. It bounds the pairs of a dense crowd, although
-/// one can be chosen by many.
+/// Number of nearest pedestrians with which each forms pairs, so that pairs grow in proportion to people. One
+/// pedestrian can be among the nearest of many.
 const MOST_NEIGHBOURS: usize = 16;
 /// A factor is at least this large relative to the largest of its row.
 const LEAST_FACTOR: f32 = 3e-4;

@@ -65,9 +65,9 @@ impl Futures {
     /// [`risks`](Self::risks), where pedestrians see the plan and keep away from it as people do from each other.
     ///
     /// The odds that somebody comes close are divided by a factor learned from recordings in which a pedestrian plays
-    /// the robot: a large one, and a small one for those who walk with the `ego`. It is that of the distance from the
-    /// middle of the plan, `within` and the largest radius. Whoever is close already stays as it is, and nobody avoids
-    /// distances of more than 1.5 m.
+    /// the robot: a large one, and a small one for those who walk with the `ego`. The factor depends on the distance
+    /// between centres, which is `within` plus the largest radius of the plan; from 1.5 m on it is 1. Pedestrians who
+    /// are close at the moment itself keep their probability of 1.
     ///
     /// # Errors
     /// As [`risks`](Self::risks).
@@ -104,8 +104,8 @@ impl Futures {
         Ok(plans.par_iter().map(risk).collect())
     }
 
-    /// For each plan, how far from its edge pedestrians are expected to stay if nobody sees it. The model is that of
-    /// [`risks`](Self::risks). Without its short cuts a plan takes some 10 ms.
+    /// For each plan, the expected least distance of pedestrians from its edge if they do not see it, computed with the
+    /// futures and deviations of [`risks`](Self::risks). A plan takes some 10 ms.
     ///
     /// # Errors
     /// The forecast has no spread.

@@ -15,10 +15,10 @@ const GROUPS: &str = "recording recordingid video videoid videoname clip clipid 
                       sessionid runid take takeid trial trialid experiment experimentid caseid scenario scenarioid \
                       logid dataset floor floorid locationid site siteid camera cameraid cameraname cam camid sceneid \
                       scenename scenetoken";
-/// Names of columns that may do so, or count or measure something.
+/// Names of columns that may tell recordings apart, but often hold something else.
 const PARTS: &str = "seq sequence run file log source segment segmentid part partid zone zoneid room area location \
                      place map city vid date day device deviceid sensor sensorid station";
-/// Of the first, those that a stream may call `scene`.
+/// Those of `GROUPS` that a stream may call `scene`.
 const CAMERAS: &str = "camera cameraid cameraname cam camid sceneid scenename scenetoken";
 /// Most faults of columns that say the same in a message.
 const MOST_FAULTS: usize = 5;
@@ -51,7 +51,7 @@ pub(super) struct Header {
     /// Whether the names, the layout or the user say that positions are in metres or parts of them.
     pub(super) has_unit: bool,
     pub(super) scene: Option<usize>,
-    /// The column of classes, and the one by which the user keeps rows; a layout knows its classes.
+    /// The column of classes (`None` in a layout, which names its own), and the one by which the user keeps rows.
     pub(super) class: Option<usize>,
     pub(super) keep: Option<usize>,
     pub(super) lost: Option<usize>,

@@ -17,7 +17,7 @@ pub(super) struct Layout {
     pub(super) constant: Option<usize>,
     /// The column that says of which class a row is, and the class of pedestrians.
     pub(super) class: Option<(usize, &'static str)>,
-    /// The column that marks rows, and whether those marked are left out, or those not marked.
+    /// A column of 0 or 1, and which rows are left out: those with 1 (true) or those with 0 (false).
     pub(super) mark: Option<(usize, bool)>,
     /// Frames a second of all files of the format.
     pub(super) rate: Option<f64>,

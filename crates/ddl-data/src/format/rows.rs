@@ -115,7 +115,8 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     (placed.collect(), PedestrianNames::new(names))
 }
 
-/// How often the frames of a file begin again: by more than rows in disorder, 2 s or five frames of those in it.
+/// How often the frames of a file begin again. A row up to 2 s, or five of the smallest frame steps, before the last one
+/// is only out of order.
 fn restarts(rows: &[TrackRow]) -> usize {
     let rises = rows.array_windows().map(|[before, row]| row.frame - before.frame);
     let disorder = match rows.first().and_then(|row| row.unit) {
@@ -138,8 +139,8 @@ fn restarts(rows: &[TrackRow]) -> usize {
     }
 }
 
-/// The same of a file in another order, such as one pedestrian after the other: the rows of each are in order of time,
-/// or are parts of which the next lies before the last.
+/// The same for a file in another order, such as one pedestrian after the other. It is 0 unless the rows of every
+/// pedestrian form parts in order of time, and each part is wholly earlier than the part before it.
 fn restarts_of_tracks(rows: &[TrackRow], disorder: i64) -> usize {
     let mut tracks: BTreeMap<&PedestrianField, Vec<i64>> = BTreeMap::new();
     for row in rows {

@@ -3,7 +3,7 @@
 use super::course::{Approach, Leg, legs};
 use super::quadrature::{DEVIATIONS, Quadrature};
 use crate::{error::SceneError, futures::Futures, plan::Plan};
-use ddl_core::{HORIZON, Position, between};
+use ddl_core::{HORIZON, Position, between, bounds};
 use std::array::from_fn;
 
 /// What `f32` may be wrong by, as a share of the size of a coordinate.
@@ -244,10 +244,7 @@ impl Way {
 fn rings<P: Iterator<Item = Position> + Clone>(origin: Position, of_step: impl Fn(usize) -> (P, f64)) -> Rings {
     let discs: [[f64; 3]; HORIZON] = from_fn(|step| {
         let (positions, margin) = of_step(step);
-        let [low, high] = [f64::min, f64::max].map(|end| {
-            let corner = positions.clone().reduce(|a, b| [end(a[0], b[0]), end(a[1], b[1])]);
-            corner.unwrap_or(origin)
-        });
+        let [low, high] = bounds(positions.clone()).unwrap_or([origin; 2]);
         let middle = between(low, high, 0.5);
         let square = |at: Position| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
         let radius = positions.map(square).fold(0.0, f64::max).sqrt() + margin;

@@ -141,7 +141,7 @@ proptest! {
         prop_assert!(close(&reversed.pedestrians, &risk.pedestrians, 1e-12));
     }
 
-    /// Who sees a plan keeps its distance from the middle, however the limit is divided into a radius and a distance.
+    /// The risk of a seen plan depends only on the sum of its radius and the distance.
     #[test]
     fn radius_and_distance_are_one(
         (starts, velocities, scales, rows) in scenes(), within in 0.0..0.6f64, r in 0.0..0.6f64,

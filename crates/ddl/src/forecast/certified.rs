@@ -21,7 +21,7 @@ use rayon::prelude::*;
 pub struct CertifiedForecast {
     /// The forecast; [`certified`](Forecast::certified) states which certificates hold.
     pub forecast: Forecast,
-    /// `[N][K]`; none of a forecast that was made without them.
+    /// `[N][K]`; empty if the forecast was made without certificates.
     pub certificates: Vec<LyapunovCertificate<f64>>,
 }
 

@@ -44,7 +44,7 @@ pub struct RunDirectory(PathBuf);
 macro_rules! files {
     ($($(#[$doc:meta])* $visible:vis $file:ident => $name:literal,)*) => {
         impl RunDirectory {
-            /// The names of the files of a run, but of its weights after epochs.
+            /// The names of the files of a run, except those of the weights after each epoch.
             pub const FILES: &[&str] = &[$($name),*];
 
             $($(#[$doc])* $visible fn $file(&self) -> PathBuf {

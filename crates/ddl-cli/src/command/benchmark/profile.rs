@@ -54,7 +54,7 @@ impl Optimiser {
     }
 
     /// Small batches and step sizes that decay: the best of single-step training within a few thousand steps. Chosen on
-    /// validation splits of training recordings (docs/published.md).
+    /// validation splits of training recordings.
     fn short() -> Self {
         Self {
             batch_pedestrians: 16,
