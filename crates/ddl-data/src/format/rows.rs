@@ -115,8 +115,8 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     (placed.collect(), PedestrianNames::new(names))
 }
 
-/// How often the frames of a file begin again. A row up to 2 s, or five of the smallest frame steps, before the last one
-/// is only out of order.
+/// How often the frames of a file begin again. A row up to 2 s, or five of the smallest frame steps, before the last
+/// one is only out of order.
 fn restarts(rows: &[TrackRow]) -> usize {
     let rises = rows.array_windows().map(|[before, row]| row.frame - before.frame);
     let disorder = match rows.first().and_then(|row| row.unit) {
