@@ -33,13 +33,13 @@ def test_other_threads_run_while_a_forecast_is_made(forecaster):
     ticker = threading.Thread(target=tick)
     ticker.start()
     begin = time.perf_counter()
-    forecaster.forecast(crowd(300))
-    took = time.perf_counter() - begin
+    forecaster.forecast(crowd(3000))
+    end = time.perf_counter()
     stop.set()
     ticker.join()
-    during = [at for at in ticks if begin <= at <= begin + took]
-    assert took > 0.05 and len(during) > 5, (took, len(during))
-    assert max(np.diff(during)) < max(0.1, took / 3)
+    # A call that held the interpreter would be one pause from its begin to its end, on a machine of any speed.
+    pauses = np.diff([begin, *(at for at in ticks if begin <= at <= end), end])
+    assert max(pauses) < (end - begin) / 2, (end - begin, len(pauses), max(pauses))
 
 
 def test_threads_get_the_same_bits(forecaster, crossing):
