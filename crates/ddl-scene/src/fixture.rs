@@ -1,7 +1,7 @@
 //! Scenes for tests.
 
 use crate::{Futures, Plan, PlanPoint};
-use ddl_core::{Forecast, HORIZON, OBSERVED, Pace, PedestrianId, Position, RegionTable, Spread, Window};
+use ddl_core::{Forecast, HORIZON, OBSERVED, ObservationQuality, Pace, PedestrianId, Position, RegionTable, Spread, Window};
 
 /// Pedestrians that stood and then go straight on: `[N][K]` velocities (m/s); the spread grows to `[N]` scales (m).
 pub(crate) fn futures(starts: &[Position], velocities: &[Vec<Position>], weights: &[f64], scales: &[f64]) -> Futures {
@@ -26,6 +26,19 @@ pub(crate) fn futures(starts: &[Position], velocities: &[Vec<Position>], weights
         regions: RegionTable::of(&[&[[1.0; HORIZON]; 9]; 3], &[0.5]).unwrap().into(),
     };
     Futures::new(&window, forecast.with_spread(spread).unwrap()).unwrap()
+}
+
+/// The same scene, whose pedestrians were seen a while ago: their positions have this deviation (m).
+pub(crate) fn unsure(futures: Futures, deviation: f64) -> Futures {
+    let n = futures.pedestrians();
+    let tracks = (0..n).map(|i| vec![futures.present(i); OBSERVED]).collect();
+    let ids = (0..n).map(|i| PedestrianId(i as i64)).collect();
+    let quality = ObservationQuality {
+        deviation,
+        ..ObservationQuality::default()
+    };
+    let window = Window::new("yard", 0, 10, ids, tracks).unwrap().with_qualities(vec![quality; n]);
+    Futures::new(&window, futures.forecast().clone()).unwrap()
 }
 
 /// A plan of rows of time (s), x, y and radius (m).

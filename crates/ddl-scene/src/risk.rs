@@ -21,7 +21,7 @@ mod tests;
 
 use crate::{energy::Energy, error::SceneError, futures::Futures, plan::Plan};
 use course::legs;
-use crowd::{Crowd, Hits, Sweep};
+use crowd::{Crowd, Sweep};
 use ddl_core::HORIZON;
 use quadrature::DEVIATIONS;
 pub(crate) use quadrature::probability;
@@ -67,7 +67,7 @@ impl Futures {
     /// The odds that somebody comes close are divided by a factor learned from recordings in which a pedestrian plays
     /// the robot: a large one, and a small one for those who walk with the `ego`. The factor depends on the distance
     /// between centres, which is `within` plus the largest radius of the plan; from 1.5 m on it is 1. Pedestrians who
-    /// are close at the moment itself keep their probability of 1.
+    /// are close at the moment itself, or may be, keep the probability of that.
     ///
     /// # Errors
     /// As [`risks`](Self::risks).
@@ -123,16 +123,18 @@ impl Futures {
             let mut nobody: Option<[[f64; HORIZON]; 2]> = None;
             for &i in &near {
                 let Some(hits) = crowd.hits(sweep, i, k) else { continue };
-                // With the odds of all hits divided by a factor, those of a part fall with them.
-                let all = Hits::share(hits.until[HORIZON - 1]);
-                let seen = odds[i] / (1.0 - all + all * odds[i]);
+                // Nobody can keep away from what is close already. With the odds of all other hits divided by a factor,
+                // those of a part of them fall with them.
+                let [first, later] = hits.until[HORIZON - 1];
+                let later = later / f64::max(1.0 - first, f64::MIN_POSITIVE);
+                let seen = odds[i] / (1.0 - later + later * odds[i]);
                 let nobody = nobody.get_or_insert([[1.0; HORIZON]; 2]);
                 for (nobody, hits) in nobody.iter_mut().zip([&hits.steps, &hits.until]) {
-                    for (nobody, &hits) in nobody.iter_mut().zip(hits) {
-                        *nobody *= 1.0 - seen * Hits::share(hits);
+                    for (nobody, [first, later]) in nobody.iter_mut().zip(hits) {
+                        *nobody *= 1.0 - first - seen * later;
                     }
                 }
-                pedestrians[i] += weight * seen * all;
+                pedestrians[i] += weight * (first + seen * hits.until[HORIZON - 1][1]);
             }
             for (sums, nobody) in [&mut steps, &mut until].into_iter().zip(nobody.iter().flatten()) {
                 for (sum, nobody) in sums.iter_mut().zip(nobody) {

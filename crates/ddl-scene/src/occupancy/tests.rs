@@ -1,8 +1,8 @@
 use super::mass::{MassTable, mass};
-use crate::fixture::futures;
+use crate::fixture::{futures, unsure};
 use crate::risk::probability;
 use crate::{Area, Futures, Occupancy};
-use ddl_core::{ObservationQuality, PedestrianId, Position, Window, distance};
+use ddl_core::{Position, distance};
 use proptest::{collection::vec, prelude::*};
 
 fn grids(futures: &Futures, area: &Area, times: &[f64]) -> Vec<Occupancy> {
@@ -110,15 +110,7 @@ fn files_of_others() {
 
 #[test]
 fn who_was_seen_a_while_ago_is_not_certain_now() {
-    let forecast = futures(&[[0.0; 2]], &[vec![[0.0; 2]]], &[1.0], &[0.5])
-        .forecast()
-        .clone();
-    let window = Window::new("yard", 0, 10, vec![PedestrianId(0)], vec![vec![[0.0; 2]; 8]]).unwrap();
-    let quality = ObservationQuality {
-        deviation: 0.4,
-        ..ObservationQuality::default()
-    };
-    let futures = Futures::new(&window.with_qualities(vec![quality]), forecast).unwrap();
+    let futures = unsure(futures(&[[0.0; 2]], &[vec![[0.0; 2]]], &[1.0], &[0.5]), 0.4);
     let area = Area::new([-0.05; 2], [0.05; 2], 0.1).unwrap();
     let found = f64::from(grids(&futures, &area, &[0.0])[0].probabilities[0]);
     assert!((found - probability(0.25 / 0.4)).abs() < 1e-3, "{found}");

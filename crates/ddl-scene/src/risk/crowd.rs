@@ -49,19 +49,13 @@ pub(super) struct Sweep {
     rings: Rings,
 }
 
-/// Numbers of deviations that come close, of 64.
+/// Shares of deviations that come close: of those that are close at the moment itself, and of the others.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hits {
     /// During each step.
-    pub(super) steps: [u32; HORIZON],
+    pub(super) steps: [[f64; 2]; HORIZON],
     /// By its end.
-    pub(super) until: [u32; HORIZON],
-}
-
-impl Hits {
-    pub(super) fn share(hits: u32) -> f64 {
-        f64::from(hits) / DEVIATIONS as f64
-    }
+    pub(super) until: [[f64; 2]; HORIZON],
 }
 
 impl Crowd {
@@ -133,24 +127,29 @@ impl Crowd {
     pub(super) fn hits(&self, sweep: &Sweep, i: usize, k: usize) -> Option<Hits> {
         let pair = k * self.n + i;
         let near = near(&self.rings[pair], &sweep.rings)?;
-        let mut now = [0; HORIZON];
-        for leg in sweep.legs.iter().filter(|leg| near[leg.step] > 0) {
+        let (mut now, mut first) = ([0; HORIZON], 0);
+        for (l, leg) in sweep.legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
             let approach = leg.approach(&self.paths[pair], &self.scales[i]);
-            now[leg.step] |= self.close(leg, &approach, sweep.within);
+            let reaches = leg.radii.map(|radius| sweep.within + radius);
+            now[leg.step] |= self.close(&approach, reaches);
+            if l == 0 && now[0] > 0 {
+                first = self.close(&approach.at_begin(), [reaches[0]; 2]);
+            }
         }
         let mut so_far = 0;
         let until = now.map(|now: u64| {
             so_far |= now;
             so_far
         });
-        let [steps, until] = [now, until].map(|bits| bits.map(u64::count_ones));
+        let share = |bits: u64| f64::from(bits.count_ones()) / DEVIATIONS as f64;
+        let [steps, until] = [now, until].map(|steps| steps.map(|bits| [share(bits & first), share(bits & !first)]));
         (so_far > 0).then_some(Hits { steps, until })
     }
 
-    /// The deviations that come close during a leg, one bit for each.
-    fn close(&self, leg: &Leg, approach: &Approach, within: f64) -> u64 {
+    /// The deviations that come closer during a leg than these distances at its ends, one bit for each.
+    fn close(&self, approach: &Approach, reaches: [f64; 2]) -> u64 {
         let offsets = approach.offsets.map(|offset| offset.map(|number| number as f32));
-        let way = Way::new(offsets, approach.scales, leg.radii.map(|radius| within + radius));
+        let way = Way::new(offsets, approach.scales, reaches);
         let nearest = way.nearest() * (1.0 - 4.0 * ROUNDING as f32);
         let reaches = [way.r + way.dr.max(0.0), way.s + way.ds.max(0.0)];
         let mut close = 0;
