@@ -13,6 +13,8 @@ pub(super) enum Role {
     Scene,
     /// 1 where the position is not seen.
     Lost,
+    /// 0 where it is not seen.
+    Valid,
     /// From here on columns may be there and not be read.
     Class,
     Left,
@@ -24,7 +26,7 @@ pub(super) enum Role {
 }
 
 /// The roles with their names, in small letters without blanks and signs. Users choose a role by the first one.
-const NAMES: [(Role, &str); 14] = [
+const NAMES: [(Role, &str); 15] = [
     (
         Role::Frame,
         "frame bild frames frameid frameidx frameindex framenumber frameno framenum framenr fr",
@@ -55,6 +57,7 @@ const NAMES: [(Role, &str); 14] = [
     ),
     (Role::Scene, "scene"),
     (Role::Lost, "lost"),
+    (Role::Valid, "valid isvalid"),
     (Role::Left, "left xmin x1 bbleft bboxleft"),
     (Role::Top, "top ymin y1 bbtop bboxtop"),
     (Role::Right, "right xmax x2 bbright bboxright"),

@@ -48,7 +48,8 @@ fn rate(word: &str) -> Option<f64> {
     (rate.is_finite() && rate > 0.0).then_some(rate)
 }
 
-/// The names of `count` columns in a comment, as numpy writes them: at least three of them are known.
+/// The names of `count` columns in a comment, as numpy writes them: at least three of them are known. If all are, their
+/// number may be another one, which the reader of the rows refuses.
 pub(super) fn names_in_comment(comment: &str, count: usize, choice: &ColumnChoice) -> Option<Vec<String>> {
     let text = comment.trim_start().trim_start_matches(COMMENTS).trim();
     let text = text.rsplit_once(':').map_or(text, |(_, names)| names.trim());
@@ -56,7 +57,9 @@ pub(super) fn names_in_comment(comment: &str, count: usize, choice: &ColumnChoic
     let names: Vec<String> = names.into_iter().map(std::borrow::Cow::into_owned).collect();
     let is_known =
         |name: &&String| is_known(name) || choice.roles.iter().any(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
-    (names.len() == count && names.iter().filter(is_known).count() >= KNOWN_NAMES).then_some(names)
+    let known = names.iter().filter(is_known).count();
+    let is_other = known > KNOWN_NAMES && known == names.len();
+    (known >= KNOWN_NAMES && (names.len() == count || is_other)).then_some(names)
 }
 
 #[cfg(test)]

@@ -8,13 +8,16 @@ use crate::format::column_names::{
     LengthUnit, Named, Rest, Role, chosen_as, is_known, is_one_of, named, rest_beside, words,
 };
 use crate::format::field::quoted;
-use crate::format::layouts::{Layout, Place};
+use crate::format::frames_beside::FramesBeside;
+use crate::format::layouts::Layout;
+use crate::format::position_columns::Place;
+use crate::format::recognise::count_columns;
 
 /// Names of columns that tell the recordings of one file apart.
 const GROUPS: &str = "recording recordingid video videoid videoname clip clipid sequenceid sequencename session \
                       sessionid runid take takeid trial trialid experiment experimentid caseid scenario scenarioid \
                       logid dataset floor floorid locationid site siteid camera cameraid cameraname cam camid sceneid \
-                      scenename scenetoken";
+                      scenename scenetoken episode episodeid rollout rolloutid simulation simulationid";
 /// Names of columns that may tell recordings apart, but often hold something else.
 const PARTS: &str = "seq sequence run file log source segment segmentid part partid zone zoneid room area location \
                      place map city vid date day device deviceid sensor sensorid station";
@@ -54,7 +57,10 @@ pub(super) struct Header {
     /// The column of classes (`None` in a layout, which names its own), and the one by which the user keeps rows.
     pub(super) class: Option<usize>,
     pub(super) keep: Option<usize>,
-    pub(super) lost: Option<usize>,
+    /// The column that marks rows, and the mark of those that are left out.
+    pub(super) mark: Option<(usize, bool)>,
+    /// Frames beside the times.
+    pub(super) frames_beside: Option<FramesBeside>,
     /// Columns whose value must stay the same: others belong to other recordings.
     pub(super) groups: Vec<usize>,
     /// Further columns.
@@ -80,7 +86,11 @@ impl Header {
         let numbers = names.iter().filter(|name| name.parse::<f64>().is_ok());
         if 2 * numbers.count() > names.len() && !names.iter().any(|name| is_known(name)) {
             let count = names.len();
-            let detail = format!("found numbers; put a line with the names of the {count} columns above them");
+            let detail = if count_columns(names.iter().copied()) {
+                format!("found 0, 1, 2, ...; if they count the columns, write the {count} names instead")
+            } else {
+                format!("found numbers; put a line with the names of the {count} columns above them")
+            };
             let example = if count == 4 { ": frame,pedestrian,x,y" } else { "" };
             return Err((None, format!("{RULE}: {detail}{example}")));
         }
@@ -94,10 +104,7 @@ impl Header {
             .iter()
             .any(|name| named(0, name).is_some_and(|named| named.role == Role::Time));
         for (index, name) in names.iter().enumerate() {
-            let chosen = choice
-                .roles
-                .iter()
-                .find(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
+            let chosen = choice.roles.iter().find(|(_, chosen)| is_called(names, name, chosen));
             // x and y that are given stand for a box as well, and a box for x and y.
             let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
             let by_name = if has_no_time && rest_beside(&plain, index).is_some() {
@@ -172,7 +179,8 @@ impl Header {
             scene: None,
             class: None,
             keep: choice.keep.as_ref().map(|(name, _)| index(name)).transpose()?,
-            lost: None,
+            mark: layout.mark,
+            frames_beside: None,
             groups: layout.constant.into_iter().collect(),
             unread: Vec::new(),
             remarks,
@@ -242,7 +250,9 @@ impl Roles<'_> {
             },
             scene: self.index(Role::Scene),
             class,
-            lost: self.index(Role::Lost),
+            mark: (self.index(Role::Lost).map(|index| (index, true)))
+                .or(self.index(Role::Valid).map(|index| (index, false))),
+            frames_beside: self.frames_beside(time),
             groups: match self.of(Role::Scene) {
                 Some(_) => Vec::new(),
                 None => unread.iter().copied().filter(|&index| self.is_group(index)).collect(),
@@ -261,11 +271,15 @@ impl Roles<'_> {
                 "the times are those of the column {when}; --columns frame={other} takes the frames"
             ));
         }
-        if is_point && self.is_corner() {
-            remarks.push(
+        let size = self.index(Role::Width).zip(self.index(Role::Height));
+        if let Some(x) = self.index(Role::X).filter(|_| is_point && size.is_some()) {
+            let x = quoted(self.names[x]);
+            remarks.push(if x.eq_ignore_ascii_case("x") {
                 "x and y are read as the position; if they are the corner of the box, give --columns left=x,top=y"
-                    .to_owned(),
-            );
+                    .to_owned()
+            } else {
+                format!("{x} is read as metres; of a box in a picture, give --unit px and --homography")
+            });
         }
         // A known name of the x coordinate, with z for x.
         let is_x = |name: &str| named(0, name).is_some_and(|named| named.role == Role::X);
@@ -285,6 +299,13 @@ impl Roles<'_> {
 
     fn place(&self) -> Option<Place> {
         self.point().or_else(|| self.corner())
+    }
+
+    fn frames_beside(&self, time: &Named) -> Option<FramesBeside> {
+        // One scene may end at a later frame than the next one begins at.
+        let is_one_clock = time.role == Role::Time && self.of(Role::Scene).is_none();
+        let frames = self.index(Role::Frame).filter(|_| is_one_clock);
+        frames.map(FramesBeside::new)
     }
 
     fn is_group(&self, index: usize) -> bool {
@@ -308,25 +329,15 @@ impl Roles<'_> {
         foot.or(other.map(|(right, bottom)| Place::FootOfCorners([left, top, right, bottom])))
     }
 
-    /// Whether x and y may be the corner of a box with width and height.
-    fn is_corner(&self) -> bool {
-        let is_plain = |role: Role, name: &str| {
-            self.index(role)
-                .is_some_and(|i| self.names[i].eq_ignore_ascii_case(name))
-        };
-        let size = self.index(Role::Width).zip(self.index(Role::Height));
-        is_plain(Role::X, "x") && is_plain(Role::Y, "y") && size.is_some()
-    }
-
     /// The column that `--keep` names, by its role or its name.
     fn kept(&self, name: &str) -> Option<usize> {
         let of_role = self.index(Role::Class).filter(|_| name == "class");
-        of_role.or_else(|| self.names.iter().position(|column| column.eq_ignore_ascii_case(name)))
+        of_role.or_else(|| (self.names.iter()).position(|column| is_called(self.names, column, name)))
     }
 
     /// Columns that are named and not there.
     fn not_there(&self, choice: &ColumnChoice) -> Vec<Fault> {
-        let is_there = |name: &str| self.names.iter().any(|column| column.eq_ignore_ascii_case(name));
+        let is_there = |name: &str| self.names.iter().any(|column| is_called(self.names, column, name));
         let chosen = choice.roles.iter().map(|(_, name)| name).filter(|name| !is_there(name));
         let keep = choice.keep.iter().map(|(name, _)| name);
         let kept = keep.filter(|name| self.kept(name).is_none());
@@ -432,6 +443,11 @@ impl Roles<'_> {
             format!("still missing: {}{rename}", missing.join(", ")),
         ))
     }
+}
+
+/// Whether this is the column that is asked for. Large and small letters count where a column has just that name.
+fn is_called(names: &[&str], column: &str, asked: &str) -> bool {
+    column == asked || column.eq_ignore_ascii_case(asked) && !names.contains(&asked)
 }
 
 /// Whether a column tells cameras apart, which a stream does by scenes.

@@ -1,6 +1,7 @@
 //! Known files without a header: what their columns hold. A new format is an entry here.
 
 use crate::format::kind::Format;
+use crate::format::position_columns::Place;
 
 /// The columns of a file without a header.
 #[derive(Debug)]
@@ -23,27 +24,6 @@ pub(super) struct Layout {
     pub(super) rate: Option<f64>,
     /// What the reader should know.
     pub(super) note: Option<&'static str>,
-}
-
-/// The columns of a position.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Place {
-    Point([usize; 2]),
-    /// The centre of a box: left, top, right, bottom.
-    Centre([usize; 4]),
-    /// The middle of the lower edge of a box: left, top, width, height.
-    Foot([usize; 4]),
-    /// The same of a box: left, top, right, bottom.
-    FootOfCorners([usize; 4]),
-}
-
-impl Place {
-    pub(super) fn columns(&self) -> &[usize] {
-        match self {
-            Self::Point(columns) => columns,
-            Self::Centre(columns) | Self::Foot(columns) | Self::FootOfCorners(columns) => columns,
-        }
-    }
 }
 
 const METRES: Option<f64> = Some(1.0);

@@ -11,6 +11,10 @@ const MUCH_LONGER: f64 = 5.0;
 /// If the tracks of one reading have so many times as many rows as those of the other, it is right.
 const MORE: f64 = 2.0;
 
+/// If the tracks of both readings have fewer rows in the mean, neither is right, unless there are few rows.
+const LEAST: f64 = 1.5;
+const FEW_ROWS: usize = 20;
+
 /// What the first two of four or more columns are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Order {
@@ -18,6 +22,8 @@ pub(super) enum Order {
     PedestrianFirst,
     /// Both readings give tracks alike, or what speaks for one of them is contradicted.
     Unclear,
+    /// In both readings nearly all pedestrians have one row.
+    Neither,
 }
 
 struct Tracks {
@@ -35,7 +41,12 @@ pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
     let rows = &rows[..rows.len().min(MOST_ROWS)];
     // Only times have fractions.
     let fractions = [0, 1].map(|column| rows.iter().any(|(of, _)| of[column].fract() != 0.0));
-    let (first, second) = match [0, 1].map(|frame| tracks(rows, frame)) {
+    let read = [0, 1].map(|frame| tracks(rows, frame));
+    let are_few = |tracks: &Option<Tracks>| tracks.as_ref().is_none_or(|tracks| tracks.rows < LEAST);
+    if rows.len() > FEW_ROWS && read.iter().all(are_few) {
+        return Order::Neither;
+    }
+    let (first, second) = match read {
         [_, None] => return Order::FrameFirst,
         [None, Some(second)] if second.unit > 1 || fractions[1] => return Order::PedestrianFirst,
         // One pedestrian, or all pedestrians of one frame.

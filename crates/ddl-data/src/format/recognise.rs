@@ -1,5 +1,6 @@
 //! How the format of a file is recognised.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::error::FormatError;
@@ -13,8 +14,8 @@ use crate::format::separator::Separator;
 use crate::format::text::end_of_lines;
 use crate::format::vsp;
 
-/// Least height in the fifth column of a file in centimetres: people in metres are lower.
-const LEAST_CENTIMETRES: f64 = 20.0;
+/// Heights in the fifth column of a file in centimetres: people in metres are lower, and nobody is higher.
+const CENTIMETRES: std::ops::RangeInclusive<f64> = 20.0..=230.0;
 /// Seconds since 1970 that show that a column holds times.
 const LEAST_TIME: f64 = 1e8;
 
@@ -50,6 +51,10 @@ impl Format {
         }
         let has_header = !fields(Separator::of(first), first).iter().any(|field| is_number(field));
         let separator = Separator::of_numbers(first);
+        let second = lines.filled().nth(1).unwrap_or_default();
+        if count_columns(fields(separator, first).iter().map(String::as_str)) && second.contains('.') {
+            return Ok(Self::Table);
+        }
         let first = fields(separator, first);
         if has_header || lines.has_header_in_comment(first.len(), choice) {
             // A word of text that is no table, such as that of another file, is a row with too few fields.
@@ -63,14 +68,13 @@ impl Format {
         if separator == Separator::Comma && lines.are_star() {
             return Ok(Self::StarCsv);
         }
-        match (first.len(), separator) {
-            (4, _) => lines
-                .of_four(separator)
-                .map_err(|problem| FilePlace::line(1).wrong(problem).in_file(&path.display().to_string())),
-            (5, Separator::Blanks) => Ok(lines.of_five(separator)),
+        let recognised = match (first.len(), separator) {
+            (4, _) => lines.of_four(separator),
+            (5, Separator::Blanks) => lines.of_five(separator),
             (_, Separator::Blanks) if !named("csv") => Ok(Self::SocialGan),
             _ => Ok(Self::Table),
-        }
+        };
+        recognised.map_err(|problem| FilePlace::line(1).wrong(problem).in_file(&path.display().to_string()))
     }
 }
 
@@ -162,27 +166,43 @@ impl<'a> Lines<'a> {
                  the line frame,pedestrian,x,y above them, or pedestrian,frame,x,y (with the separators of the rows)"
                     .to_owned(),
             ),
+            Order::Neither => Err(
+                "the first two columns are not frame and pedestrian: hardly any pedestrian would have two rows; write \
+                 the names of the columns above the rows, such as x,y,frame,pedestrian (with their separators)"
+                    .to_owned(),
+            ),
         }
     }
 
-    /// `PeTrack` writes the pedestrian first; rows in which the frame is first are refused for their fifth column. A
-    /// single row shows no order.
-    fn of_five(self, separator: Separator) -> Format {
+    /// `PeTrack` writes the pedestrian first; rows in which the frame is first are refused for their fifth column. Rows
+    /// with one first number show no order.
+    fn of_five(self, separator: Separator) -> Result<Format, String> {
         let rows = || self.numbers::<5>(separator);
-        if rows().nth(1).is_some() && self.order(separator) == Order::FrameFirst {
-            Format::SocialGan
-        } else if rows().all(|[.., height]| height >= LEAST_CENTIMETRES) {
-            Format::PeTrackCm
+        let has_two = rows().map(|[first, ..]| first.to_bits()).collect::<BTreeSet<_>>().len() > 1;
+        if has_two && self.of_four(separator)? == Format::SocialGan {
+            Ok(Format::SocialGan)
+        } else if rows().all(|[.., height]| CENTIMETRES.contains(&height)) {
+            Ok(Format::PeTrackCm)
         } else {
-            Format::PeTrack
+            Ok(Format::PeTrack)
         }
     }
 }
 
-/// The fields of a line, without empty ones at its end.
+/// Whether these are 0, 1, 2, ..., as in the first line of a table whose columns have no names.
+pub(super) fn count_columns<'a>(names: impl Iterator<Item = &'a str>) -> bool {
+    let names: Vec<&str> = names.skip_while(|name| name.is_empty()).collect();
+    names.len() > 2
+        && (0..)
+            .zip(&names)
+            .all(|(index, name): (usize, _)| **name == index.to_string())
+}
+
+/// The fields of a line, without empty ones at its end; numbers have a decimal point.
 fn fields(separator: Separator, line: &str) -> Vec<String> {
     let fields = separator.fields(line, 1).unwrap_or_default();
-    let mut fields: Vec<String> = fields.into_iter().map(std::borrow::Cow::into_owned).collect();
+    let fields = fields.iter().map(|field| separator.with_point(field).into_owned());
+    let mut fields: Vec<String> = fields.collect();
     while fields.last().is_some_and(String::is_empty) {
         fields.pop();
     }

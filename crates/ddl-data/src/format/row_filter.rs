@@ -13,6 +13,10 @@ use crate::format::layouts::Layout;
 const VEHICLES: &str = "car cars veh vehicle truck trucks bus van trailer tram train bicycle bicyclist cyclist biker \
                         bike motorcycle motorcyclist motorbike scooter skater cart vehicles wheeler robot ego";
 const PEOPLE: &str = "pedestrian pedestrians ped peds person persons people human";
+/// Words beside those of people that do not change what they are.
+const OF_PEOPLE: &str = "type class adult child moving standing sitting walking";
+/// Words of classes that no row of a person has, as in `NonPedestrian`.
+const DENIALS: &str = "non not no false ignore ignored";
 /// Reasons to leave rows out that are counted, each for itself.
 const MOST_REASONS: usize = 20;
 /// Classes after which a stream tells no more of them.
@@ -40,16 +44,13 @@ impl RowFilter {
     /// The filter of columns with these names, which are those of a layout or a header's own.
     pub(super) fn of(header: &Header, layout: Option<&Layout>, choice: &ColumnChoice, names: &[String]) -> Self {
         let keep = header.keep.zip(choice.keep.as_ref());
-        let (class, mark) = match layout {
-            Some(layout) => (layout.class.map(|(index, class)| (index, Some(class))), layout.mark),
-            None => (
-                header.class.map(|index| (index, None)),
-                header.lost.map(|index| (index, true)),
-            ),
+        let class = match layout {
+            Some(layout) => layout.class.map(|(index, class)| (index, Some(class))),
+            None => header.class.map(|index| (index, None)),
         };
         // What marks rows or their class may be what is kept.
         let not_kept = |index: usize| Some(index) != header.keep;
-        let mark = mark.filter(|&(index, _)| not_kept(index));
+        let mark = header.mark.filter(|&(index, _)| not_kept(index));
         Self {
             class: class.filter(|&(index, _)| not_kept(index)),
             keep: keep.map(|(index, (_, value))| (index, names[index].clone(), value.clone())),
@@ -109,7 +110,10 @@ impl RowFilter {
             if kept.map_or_else(|| is_vehicle(class), |kept| !class.eq_ignore_ascii_case(kept)) {
                 return Some(format!("of class {}", field::quoted(class)));
             }
-            let is_known = has_word_of(PEOPLE, class) && !has_word_of(VEHICLES, class);
+            let mut of_people = words(class)
+                .into_iter()
+                .map(|word| is_one_of(PEOPLE, &word) || is_one_of(OF_PEOPLE, &word));
+            let is_known = has_word_of(PEOPLE, class) && of_people.all(|is_known| is_known);
             if kept.is_none() && !is_known && self.classes.len() < MOST_REASONS {
                 self.classes.insert(field::quoted(class));
             }
@@ -156,7 +160,8 @@ impl RowFilter {
 
 /// Whether a class names something else than people on foot, as `car` and `vehicle.bicycle` do.
 pub fn is_vehicle(class: &str) -> bool {
-    is_one_of(VEHICLES, &class.to_ascii_lowercase()) || has_word_of(VEHICLES, class) && !has_word_of(PEOPLE, class)
+    let is_other = has_word_of(VEHICLES, class) && !has_word_of(PEOPLE, class);
+    is_other || is_one_of(VEHICLES, &class.to_ascii_lowercase()) || has_word_of(DENIALS, class)
 }
 
 fn has_word_of(names: &str, class: &str) -> bool {
@@ -164,7 +169,8 @@ fn has_word_of(names: &str, class: &str) -> bool {
 }
 
 fn is_marked(mark: &str) -> Option<bool> {
-    let number = mark.parse().ok().filter(|mark: &f64| !mark.is_nan());
+    let number = mark.replacen(',', ".", 1).parse().ok();
+    let number = number.filter(|mark: &f64| !mark.is_nan());
     match mark.to_ascii_lowercase().as_str() {
         "yes" | "y" | "true" | "t" => Some(true),
         "no" | "n" | "false" | "f" | "" => Some(false),

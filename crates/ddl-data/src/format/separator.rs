@@ -22,12 +22,13 @@ impl Separator {
         let mut commas = line.match_indices(',');
         let are_decimal = commas.all(|(at, _)| at > 0 && is_digit(at - 1) && is_digit(at + 1));
         let (mut commas, semicolons) = (count(','), count(';'));
+        let is_split = line.split(';').all(|field| field.matches(',').count() < 2);
         let words = || line.split_ascii_whitespace();
         if are_decimal && words().count() >= 4 && words().all(|word| word.matches(',').count() < 2) {
             commas = 0;
         }
         // No decimal mark is a semicolon.
-        if semicolons > 0 && semicolons >= commas {
+        if semicolons > 0 && (is_split || semicolons >= commas) {
             Self::Semicolon
         } else if commas > 0 {
             Self::Comma

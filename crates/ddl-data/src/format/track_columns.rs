@@ -11,7 +11,7 @@ use crate::format::comments::{is_comment, names_in_comment};
 use crate::format::field::{self, PedestrianField};
 use crate::format::header::{Header, TimeColumn, first_of, is_camera};
 use crate::format::kind::Format;
-use crate::format::layouts::{Layout, Place};
+use crate::format::layouts::Layout;
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::field_count;
 use crate::format::row_filter::{RowFilter, are_alike};
@@ -22,6 +22,7 @@ use crate::scene_name::SceneName;
 const FRACTIONS: &str = "the column frame has fractions: it is read as seconds";
 const WHOLE_TIMES: &str = "the times are whole numbers: they are read as seconds; call the column frame if they count \
     frames, or time_ms, time_us or time_ns";
+const UNTRACKED: &str = "with the pedestrian -1, detections without a track";
 const UNNAMED: &str = "the rows have no header: they are read as frame, pedestrian, x, y";
 const OF_ONE: &str = "; files of one pedestrian each, with y, x and frame (Grand Central), become one by: for f in \
     *.txt; do xargs -n3 < $f | awk -v p=${f%.txt} '{print $3, p, $2, $1}'; done > all.tracks";
@@ -87,8 +88,13 @@ impl TrackColumns {
                 .rev()
                 .find_map(|comment| names_in_comment(comment, fields.len(), choice))
         {
+            let count = fields.len() - fields.iter().rev().take_while(|field| field.is_empty()).count();
             let header = Header::of(&names.iter().map(String::as_str).collect::<Vec<_>>(), choice);
             let header = header.map_err(|(_, problem)| FilePlace::line(1).wrong(problem))?;
+            if count != names.len() {
+                let problem = format!("the comment above names {} columns, this row has {count}", names.len());
+                return Err(FilePlace::line(line).wrong(problem));
+            }
             return Ok((
                 Self::named(header, names, Separator::of_numbers(first), None, choice),
                 false,
@@ -171,11 +177,12 @@ impl TrackColumns {
 
     /// Whether a line after the first row is a comment. A row may begin with the sign, in the name of a pedestrian.
     fn is_comment(&self, text: &str, fields: &[Cow<'_, str>]) -> bool {
-        let is_time = |time: &Cow<'_, str>| {
-            let time = self.separator.with_point(time);
-            time.parse::<f64>().is_ok() || field::unit_of(&time) == TimeUnit::Dates
-        };
+        let is_time = |time: &Cow<'_, str>| self.is_number(time) || field::unit_of(time) == TimeUnit::Dates;
         is_comment(text) && !(self.is_whole(fields) && fields.get(self.header.frame).is_some_and(is_time))
+    }
+
+    fn is_number(&self, field: &str) -> bool {
+        self.separator.with_point(field).parse::<f64>().is_ok()
     }
 
     /// Whether a line has the fields of a row; those beyond are empty.
@@ -340,6 +347,9 @@ impl TrackColumns {
         let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
         let is_whole = frame % STAMPS_A_SECOND == 0;
         self.assumed_unit = self.assumed_unit.filter(|unit| is_whole || *unit != WHOLE_TIMES);
+        if let Some(frames) = &mut self.header.frames_beside {
+            frames.check(fields, frame, line)?;
+        }
         if let Some((index, name, a_second)) = self.header.rest {
             let rest = place(index).read(field::integer(&fields[index], name))?;
             if !(0..a_second).contains(&rest) {
@@ -347,23 +357,24 @@ impl TrackColumns {
             }
             frame += rest * STAMPS_A_SECOND / a_second;
         }
-        let name = &*fields[self.header.pedestrian];
+        let name = &fields[self.header.pedestrian];
+        let number = self.separator.with_point(name);
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
-            field::integer(name, "pedestrian").map(|number| PedestrianField::Number(number, None))
+            field::integer(&number, "pedestrian").map(|number| PedestrianField::Number(number, None))
         } else {
-            field::pedestrian(name, "pedestrian")
+            field::pedestrian(if self.is_number(name) { &number } else { name }, "pedestrian")
         };
         let pedestrian = place(self.header.pedestrian).read(pedestrian)?;
-        let is_of_tracker = matches!(self.format, Format::Mot | Format::MotTruth | Format::Kitti);
-        if is_of_tracker && pedestrian == PedestrianField::Number(-1, None) {
-            let problem = "the pedestrian is -1: these are detections without tracks; give the output of a tracker";
-            return Err(place(self.header.pedestrian).wrong(problem));
+        if pedestrian == PedestrianField::Number(-1, None) {
+            self.filter.leave_out(UNTRACKED.to_owned());
+            return Ok(None);
         }
         let position = self.position(fields, line)?;
         // Columns that are not used. Checking that they are numbers confirms the order of the columns.
         for &index in &self.numbers {
-            place(index).read(field::number(&fields[index], &self.names[index]))?;
+            let number = self.separator.with_point(&fields[index]);
+            place(index).read(field::number(&number, &self.names[index]))?;
         }
         self.check_constants(fields, line)?;
         self.look_at_first(fields, line)?;
@@ -385,7 +396,7 @@ impl TrackColumns {
     fn words_in(&self, fields: &[Cow<'_, str>]) -> &'static str {
         if fields.iter().eq(&self.names) {
             "; the line repeats the names of the columns: delete it, or make a file of each part"
-        } else if self.is_whole(fields) && !fields.iter().any(|field| field.parse::<f64>().is_ok()) {
+        } else if self.is_whole(fields) && !fields.iter().any(|field| self.is_number(field)) {
             "; the line holds no number: delete it if it names units (--unit gives that of the positions)"
         } else {
             ""
@@ -394,26 +405,12 @@ impl TrackColumns {
 
     fn position(&self, fields: &[Cow<'_, str>], line: usize) -> Result<Position, Misread> {
         let per_metre = self.header.per_metre.unwrap_or(1.0);
-        let number = |index: usize, name: &str| {
-            let coordinate = field::coordinate(&self.separator.with_point(&fields[index]), name, per_metre);
+        let number = |index: usize| {
+            let number = self.separator.with_point(&fields[index]);
+            let coordinate = field::coordinate(&number, &self.names[index], per_metre);
             FilePlace::field(line, index + 1).read(coordinate)
         };
-        match self.header.place {
-            Place::Point([x, y]) => Ok([number(x, "x")?, number(y, "y")?]),
-            Place::Centre(columns) | Place::FootOfCorners(columns) => {
-                let [left, top, right, bottom] = columns.map(|index| number(index, &self.names[index]));
-                let (left, top, right, bottom) = (left?, top?, right?, bottom?);
-                let y = match self.header.place {
-                    Place::Centre(_) => 0.5 * (top + bottom),
-                    _ => bottom,
-                };
-                Ok([0.5 * (left + right), y])
-            }
-            Place::Foot(columns) => {
-                let [left, top, width, height] = columns.map(|index| number(index, &self.names[index]));
-                Ok([left? + 0.5 * width?, top? + height?])
-            }
-        }
+        self.header.place.position(number, line)
     }
 
     /// Checks that each constant column keeps its first value; empty fields do not count.
@@ -490,7 +487,9 @@ impl TrackColumns {
         let advice = match self.separator {
             Separator::Blanks if self.format == Format::SocialGan && found == 3 => OF_ONE,
             _ if found == 1 => "; the fields are not separated like those of the first line",
-            _ if found == expected + 1 => "; does each row begin with a name that the header lacks?",
+            _ if found == expected + 1 && self.format == Format::Table => {
+                "; does each row begin with a name that the header lacks?"
+            }
             Separator::Blanks if found > expected => "; write the names of the columns above the rows",
             Separator::Comma if found > expected => "; a comma stands between two fields and is not a decimal point",
             _ => "",

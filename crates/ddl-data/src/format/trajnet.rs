@@ -12,7 +12,7 @@ use crate::clock::TimeUnit;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::when;
-use crate::format::row_filter::RowFilter;
+use crate::format::row_filter::{RowFilter, is_vehicle};
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
@@ -128,6 +128,18 @@ struct TrackFields {
     y: Option<Value>,
     #[serde(default)]
     prediction_number: Option<IgnoredAny>,
+    #[serde(default)]
+    class: Option<Value>,
+}
+
+impl TrackFields {
+    fn left_out(&self) -> Option<String> {
+        if self.prediction_number.is_some() {
+            return Some("with a prediction_number".to_owned());
+        }
+        let class = self.class.as_ref()?.as_str().filter(|class| is_vehicle(class))?;
+        Some(format!("of class {}", field::quoted(class)))
+    }
 }
 
 fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value>, D::Error> {
@@ -161,8 +173,8 @@ fn row(text: &str, place: FilePlace, others: &mut OtherLines) -> Result<Option<T
         }
         return Ok(None);
     };
-    if track.prediction_number.is_some() {
-        others.filter.leave_out("with a prediction_number".to_owned());
+    if let Some(why) = track.left_out() {
+        others.filter.leave_out(why);
         return Ok(None);
     }
     let unit = match (&track.t, &track.f) {

@@ -1,0 +1,57 @@
+//! The columns of a position, and the position in them.
+
+use ddl_core::Position;
+
+use crate::format::place::{FilePlace, Misread};
+
+/// The columns of a position.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Place {
+    Point([usize; 2]),
+    /// The centre of a box: left, top, right, bottom.
+    Centre([usize; 4]),
+    /// The middle of the lower edge of a box: left, top, width, height.
+    Foot([usize; 4]),
+    /// The same of a box: left, top, right, bottom.
+    FootOfCorners([usize; 4]),
+}
+
+impl Place {
+    pub(super) fn columns(&self) -> &[usize] {
+        match self {
+            Self::Point(columns) => columns,
+            Self::Centre(columns) | Self::Foot(columns) | Self::FootOfCorners(columns) => columns,
+        }
+    }
+
+    /// The position in the row of a line, from the numbers in its columns.
+    ///
+    /// # Errors
+    /// That of the first number, or if a box ends before it begins.
+    pub(super) fn position(
+        self,
+        number: impl Fn(usize) -> Result<f64, Misread>,
+        line: usize,
+    ) -> Result<Position, Misread> {
+        let columns = match self {
+            Self::Point([x, y]) => return Ok([number(x)?, number(y)?]),
+            Self::Centre(columns) | Self::Foot(columns) | Self::FootOfCorners(columns) => columns,
+        };
+        let [left, top, third, fourth] = columns.map(number);
+        let [left, top, third, fourth] = [left?, top?, third?, fourth?];
+        let (size, position) = match self {
+            Self::Foot(_) => ([third, fourth], [left + 0.5 * third, top + fourth]),
+            Self::Centre(_) => (
+                [third - left, fourth - top],
+                [0.5 * (left + third), 0.5 * (top + fourth)],
+            ),
+            _ => ([third - left, fourth - top], [0.5 * (left + third), fourth]),
+        };
+        if let Some(side) = size.iter().position(|&side| side < 0.0) {
+            let problem = "the box ends before it begins; if these are other columns, --columns left=NAME,width=NAME,... \
+                           tells which are which";
+            return Err(FilePlace::field(line, columns[2 + side] + 1).wrong(problem));
+        }
+        Ok(position)
+    }
+}
