@@ -33,6 +33,9 @@ pub enum TimeUnit {
     Dates,
 }
 
+ddl_core::named!(TimeUnit, "unit of time", Seconds => "seconds", Milliseconds => "milliseconds",
+    Microseconds => "microseconds", Nanoseconds => "nanoseconds", Dates => "dates");
+
 impl TimeUnit {
     /// Units per second, and their sign; `None` for dates.
     pub(crate) fn a_second(self) -> Option<(i64, &'static str)> {

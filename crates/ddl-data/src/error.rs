@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use ddl_core::{PedestrianId, Position};
+use ddl_core::{PedestrianId, Position, is_frame};
 use thiserror::Error;
 
+use crate::clock::ClockError;
 use crate::observation::COORDINATE_LIMIT;
 
 /// A file of tracks cannot be read: the file, the line, the field and the problem.
@@ -30,10 +31,26 @@ pub enum RecordingError {
     Empty,
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
     FrameStep { found: i64 },
-    #[error("pedestrian {pedestrian}: frame {frame} is not below 2^53 in size")]
-    FrameOutOfRange { pedestrian: PedestrianId, frame: i64 },
+    #[error(transparent)]
+    Row(#[from] LiveError),
+}
+
+/// A frame that cannot be added to [`LiveTracks`](crate::LiveTracks) or to a scene memory, which stay unchanged.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
+pub enum LiveError {
+    #[error(transparent)]
+    Clock(#[from] ClockError),
+    #[error("frame {frame} is not below 2^53 in size")]
+    FrameOutOfRange { frame: i64 },
     #[error(
-        "pedestrian {pedestrian}, frame {frame}: {position:?} is no position; x and y are finite, and within \
+        "frame {frame} comes after frame {last}; push frames in order of time, each once; when the tracker restarts, \
+         clear the tracks, or end those of the memory, before its first frame"
+    )]
+    TooEarly { frame: i64, last: i64 },
+    #[error(
+        "frame {frame}, pedestrian {pedestrian}: {position:?} is no position; x and y are finite, and within \
          {COORDINATE_LIMIT} m of the origin"
     )]
     NoPosition {
@@ -41,8 +58,31 @@ pub enum RecordingError {
         frame: i64,
         position: Position,
     },
-    #[error("pedestrian {pedestrian} is in frame {frame} twice")]
+    #[error(
+        "more than {limit} pedestrians were seen within 2 s; does each keep its name from frame to frame, and is the \
+         rate right?"
+    )]
+    TooManyPedestrians { limit: usize },
+    #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one position")]
     Duplicate { pedestrian: PedestrianId, frame: i64 },
+}
+
+impl LiveError {
+    /// Checks the frame and the position of a row.
+    pub(crate) fn check_row(frame: i64, pedestrian: PedestrianId, position: Position) -> Result<(), Self> {
+        if !is_frame(frame) {
+            return Err(Self::FrameOutOfRange { frame });
+        }
+        // False for NaN.
+        if position.iter().all(|coordinate| coordinate.abs() <= COORDINATE_LIMIT) {
+            return Ok(());
+        }
+        Err(Self::NoPosition {
+            pedestrian,
+            frame,
+            position,
+        })
+    }
 }
 
 /// A data set, or one of its files, cannot be loaded.

@@ -101,7 +101,7 @@ pub use ddl_core::{
     FRAME_LIMIT, HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, PedestrianNames, Position,
     RememberedTrack, TIME_STEP, WINDOW, Window, WindowError, between,
 };
-pub use error::{DataError, FormatError, RecordingError};
+pub use error::{DataError, FormatError, LiveError, RecordingError};
 pub use fold::{Fold, TrainingSplit};
 pub use format::{
     ColumnChoice, Format, Frame, FrameReader, Numbering, escaped, is_vehicle, parse_columns, parse_recording,
@@ -109,7 +109,7 @@ pub use format::{
 };
 pub use future::Futures;
 pub use homography::{Homography, HomographyError};
-pub use live::{Completeness, LiveError, LiveTracks, checked_frame};
+pub use live::{Completeness, LiveTracks, checked_frame};
 pub use locate::locate;
 pub use observation::{COORDINATE_LIMIT, Observation};
 pub use observe::{Misfit, MisfitTreatment, RecordingNoise};

@@ -5,10 +5,9 @@ use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_frame};
-use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
-use crate::observation::COORDINATE_LIMIT;
+use crate::error::LiveError;
 use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, Row};
 use crate::recording::Recording;
 
@@ -440,14 +439,7 @@ pub fn checked_frame(
     let mut positions: Vec<(PedestrianId, Position)> = positions.into_iter().collect();
     positions.sort_unstable_by_key(|&(id, _)| id);
     for &(pedestrian, position) in &positions {
-        // False for NaN.
-        if !position.iter().all(|coordinate| coordinate.abs() <= COORDINATE_LIMIT) {
-            return Err(LiveError::NoPosition {
-                pedestrian,
-                frame,
-                position,
-            });
-        }
+        LiveError::check_row(frame, pedestrian, position)?;
     }
     match positions.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         Some(pair) => Err(LiveError::Duplicate {
@@ -456,36 +448,4 @@ pub fn checked_frame(
         }),
         None => Ok(positions),
     }
-}
-
-/// A frame that cannot be added to [`LiveTracks`] or to a scene memory, which stay unchanged.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
-pub enum LiveError {
-    #[error(transparent)]
-    Clock(#[from] ClockError),
-    #[error("frame {frame} is not below 2^53 in size")]
-    FrameOutOfRange { frame: i64 },
-    #[error(
-        "frame {frame} comes after frame {last}; push frames in order of time, each once; when the tracker restarts, \
-         clear the tracks, or end those of the memory, before its first frame"
-    )]
-    TooEarly { frame: i64, last: i64 },
-    #[error(
-        "frame {frame}, pedestrian {pedestrian}: {position:?} is no position; x and y are finite, and within \
-         {COORDINATE_LIMIT} m of the origin"
-    )]
-    NoPosition {
-        pedestrian: PedestrianId,
-        frame: i64,
-        position: Position,
-    },
-    #[error(
-        "more than {limit} pedestrians were seen within 2 s; does each keep its name from frame to frame, and is the \
-         rate right?"
-    )]
-    TooManyPedestrians { limit: usize },
-    #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one position")]
-    Duplicate { pedestrian: PedestrianId, frame: i64 },
 }

@@ -50,10 +50,8 @@ pub(crate) const OFTEN: f64 = 0.03;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum PlausibilityWarning {
-    #[error(
-        "no pedestrian has positions {frame_step} frames apart, which is taken for a step of 0.4 s; give the frame rate"
-    )]
-    NoSteps { frame_step: i64 },
+    #[error("no pedestrian has positions a step of 0.4 s apart; give the frame rate, or the unit of the times")]
+    NoSteps,
     #[error(
         "half of the steps{whose} are faster than {median:.1} m/s; are the positions in metres, and the rows of a \
          pedestrian 0.4 s apart?"
@@ -130,7 +128,6 @@ pub struct Fastest {
 }
 
 pub(crate) struct Speeds {
-    pub(crate) frame_step: i64,
     pub(crate) steps: usize,
     pub(crate) median: Option<f64>,
     pub(crate) fastest: Option<Fastest>,
@@ -153,8 +150,7 @@ pub(crate) struct Speeds {
 impl Speeds {
     pub(crate) fn warning(&self) -> Option<PlausibilityWarning> {
         let (Some(median), Some(fastest)) = (self.median, &self.fastest) else {
-            let frame_step = self.frame_step;
-            return Some(PlausibilityWarning::NoSteps { frame_step });
+            return Some(PlausibilityWarning::NoSteps);
         };
         let [rows, pedestrians] = self.at_zero;
         if pedestrians > 1 && rows as f64 > PLACEHOLDERS * self.steps as f64 {
@@ -225,7 +221,6 @@ impl Recording {
         speeds.sort_by(|a, b| a.0.total_cmp(&b.0));
         walking.sort_by(f64::total_cmp);
         Speeds {
-            frame_step: step,
             steps: speeds.len(),
             median: speeds.get(speeds.len() / 2).map(|(speed, _)| *speed),
             fastest: speeds.last().map(|(speed, seen)| Fastest {

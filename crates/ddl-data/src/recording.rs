@@ -4,11 +4,11 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
-use ddl_core::{PedestrianId, PedestrianNames, is_frame, is_frame_step};
+use ddl_core::{PedestrianId, PedestrianNames, is_frame_step};
 
 use crate::clock::{Clock, ClockError, TimeUnit};
-use crate::error::RecordingError;
-use crate::observation::{COORDINATE_LIMIT, Observation};
+use crate::error::{LiveError, RecordingError};
+use crate::observation::Observation;
 
 /// Spacing of the rows of a pedestrian (s) above which they no longer show the course of a track.
 const SLOWEST: f64 = 1.2;
@@ -60,17 +60,7 @@ impl Recording {
             position,
         } in &observations
         {
-            if !is_frame(frame) {
-                return Err(RecordingError::FrameOutOfRange { pedestrian, frame });
-            }
-            // False for NaN.
-            if !position.iter().all(|coordinate| coordinate.abs() <= COORDINATE_LIMIT) {
-                return Err(RecordingError::NoPosition {
-                    pedestrian,
-                    frame,
-                    position,
-                });
-            }
+            LiveError::check_row(frame, pedestrian, position)?;
         }
         observations.sort_unstable_by_key(|o| (o.frame, o.pedestrian));
         if let Some(pair) = observations
@@ -78,7 +68,7 @@ impl Recording {
             .find(|w| (w[0].frame, w[0].pedestrian) == (w[1].frame, w[1].pedestrian))
         {
             let Observation { frame, pedestrian, .. } = pair[0];
-            return Err(RecordingError::Duplicate { pedestrian, frame });
+            return Err(LiveError::Duplicate { pedestrian, frame }.into());
         }
         let mut frames = Vec::new();
         let mut starts = Vec::new();

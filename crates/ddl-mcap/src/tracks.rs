@@ -5,7 +5,9 @@ use crate::error::LogError;
 use crate::files::files;
 use crate::messages::Messages;
 use ddl_core::{FRAME_LIMIT, PedestrianId};
-use ddl_data::{COORDINATE_LIMIT, LiveTracks, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped};
+use ddl_data::{
+    COORDINATE_LIMIT, LiveError, LiveTracks, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped,
+};
 use mcap::Channel;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -212,7 +214,7 @@ impl Topic {
 
     fn recording(self) -> Result<Recording, String> {
         let recording = Recording::in_usual_step("log", self.rows).map_err(|error| match error {
-            RecordingError::Duplicate { pedestrian, frame } => {
+            RecordingError::Row(LiveError::Duplicate { pedestrian, frame }) => {
                 let name = self
                     .words
                     .get(&pedestrian)

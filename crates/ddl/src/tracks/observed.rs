@@ -51,7 +51,7 @@ impl ObservedTracks {
         });
         let warning = recording
             .speed_warning()
-            .filter(|warning| !matches!(warning, PlausibilityWarning::NoSteps { .. }))
+            .filter(|warning| *warning != PlausibilityWarning::NoSteps)
             .map(|warning| in_frames(clock, warning));
         let mut never_forecast = recording.pedestrians();
         never_forecast.retain(|pedestrian| !is_forecast.contains(pedestrian));
@@ -175,11 +175,8 @@ pub fn steps_in_words(clock: Clock) -> String {
 
 /// The warning with frame numbers or times of the file.
 pub fn in_frames(clock: Clock, mut warning: PlausibilityWarning) -> PlausibilityWarning {
-    use PlausibilityWarning::{Jump, NoSteps};
-    match &mut warning {
-        Jump { fastest, when } => *when = clock.words(fastest.frame),
-        NoSteps { frame_step } => *frame_step = clock.number(*frame_step).nearest(),
-        _ => {}
+    if let PlausibilityWarning::Jump { fastest, when } = &mut warning {
+        *when = clock.words(fastest.frame);
     }
     warning
 }
@@ -205,7 +202,7 @@ pub fn words_of_misfits(
 pub fn words_of_warning(warning: &PlausibilityWarning) -> String {
     let options = match warning {
         PlausibilityWarning::Fast { .. } => " (--unit, --homography, or --fps of frame numbers)",
-        PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps { .. } => " (--fps of frame numbers)",
+        PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps => " (--fps of frame numbers)",
         _ => "",
     };
     format!("{warning}{options}")

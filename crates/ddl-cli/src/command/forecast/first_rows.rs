@@ -101,7 +101,7 @@ impl SceneRows {
             ..Self::default()
         };
         match warning {
-            None | Some(PlausibilityWarning::Jump { .. } | PlausibilityWarning::NoSteps { .. }) => false,
+            None | Some(PlausibilityWarning::Jump { .. } | PlausibilityWarning::NoSteps) => false,
             Some(warning) => {
                 recordings::warn_of(&warning);
                 true
