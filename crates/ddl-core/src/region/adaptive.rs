@@ -1,6 +1,6 @@
 //! Regions that keep their coverage in a new place, and weights that follow it, by online calibration.
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 
 use crate::forecast::Forecast;
 use crate::pace::Pace;
@@ -15,8 +15,9 @@ use crate::window::Window;
 /// outcomes were. It takes every forecast, in order of time.
 ///
 /// The regions of a forecast `t` steps ahead are compared with the positions observed `t` steps later. The result
-/// changes all later regions. Pedestrians outside the window of that frame are skipped. The result does not depend on
-/// the order of the pedestrians, or on later frames.
+/// changes all later regions. Pedestrians outside the window of that frame are skipped, as are tracks that began after
+/// the forecast: another person has taken the id. The result does not depend on the order of the pedestrians, or on later
+/// frames.
 ///
 /// It begins with the table of the first forecast that has one. Forecasts without regions are unchanged.
 ///
@@ -51,7 +52,8 @@ pub struct AdaptiveRegions {
 struct Pending {
     /// The last frame observed.
     frame: i64,
-    pedestrians: Vec<PedestrianId>,
+    /// `None` for those whose track has ended.
+    pedestrians: Vec<Option<PedestrianId>>,
     forecast: Forecast,
 }
 
@@ -83,6 +85,14 @@ impl AdaptiveRegions {
         if self.pending.back().is_some_and(|last| last.frame >= now) {
             self.pending.clear();
         }
+        let young = young(window);
+        for pending in self.pending.iter_mut().filter(|_| !young.is_empty()) {
+            let frame = pending.frame;
+            let is_other = |id: &mut PedestrianId| young.get(id).is_some_and(|before| frame <= *before);
+            for pedestrian in &mut pending.pedestrians {
+                pedestrian.take_if(is_other);
+            }
+        }
         let share = self
             .pending
             .back()
@@ -105,11 +115,21 @@ impl AdaptiveRegions {
     }
 }
 
+/// The pedestrians whose tracks began within the window, each with the last position before that.
+fn young(window: &Window) -> BTreeMap<PedestrianId, i64> {
+    let pedestrians = window.pedestrians().iter().enumerate();
+    let begun = pedestrians.filter_map(|(i, id)| {
+        let before = window.quality(i).unseen.checked_sub(1)?;
+        Some((*id, window.frames()[before]))
+    });
+    begun.collect()
+}
+
 impl Pending {
     fn new(window: &Window, forecast: &Forecast) -> Self {
         Self {
             frame: window.frames()[OBSERVED - 1],
-            pedestrians: window.pedestrians().to_vec(),
+            pedestrians: window.pedestrians().iter().copied().map(Some).collect(),
             forecast: forecast.clone(),
         }
     }
@@ -141,7 +161,7 @@ impl Pending {
             Some(between(last, before, share))
         };
         let people = self.pedestrians.iter().enumerate();
-        let seen = people.filter_map(|(i, id)| Some((i, position(id)?)));
+        let seen = people.filter_map(|(i, id)| Some((i, position(id.as_ref()?)?)));
         Some((steps as usize - 1, seen.collect()))
     }
 
@@ -173,6 +193,7 @@ mod tests {
 
     use super::*;
     use crate::forecast::Spread;
+    use crate::quality::ObservationQuality;
 
     /// The positions of all pedestrians, frame by frame.
     type Tracks = Vec<Vec<Position>>;
@@ -250,6 +271,36 @@ mod tests {
             let other = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, order));
             prop_assert_eq!(one, other);
         }
+    }
+
+    /// The same tracks where pedestrian 2 is another person from frame 25 on, with its old id or a new one.
+    #[test]
+    fn an_id_of_another_person_is_as_a_new_one() {
+        let [old, new] = [2, 9].map(|id| {
+            let tracks = (0..60).map(|t: i32| {
+                let mut now = vec![[0.3 * f64::from(t), 1.0]; PEOPLE];
+                now[2] = [if t < 25 { 0.0 } else { 50.0 }, 0.5 * f64::from(t)];
+                now
+            });
+            let stream = forecasts(&tracks.collect(), ORDER)
+                .into_iter()
+                .map(|(window, forecast)| {
+                    let last = window.frames()[OBSERVED - 1];
+                    let mut qualities = vec![ObservationQuality::default(); window.len()];
+                    let mut ids = window.pedestrians().to_vec();
+                    let i = ids.iter().position(|id| id.0 == 2).unwrap();
+                    let mut positions: Vec<_> = (0..window.len()).map(|i| window.observed(i).to_vec()).collect();
+                    if last >= 25 {
+                        qualities[i].unseen = (OBSERVED as i64 - 1 - (last - 25)).max(0) as usize;
+                        positions[i].iter_mut().for_each(|position| position[0] = 50.0);
+                        ids[i] = PedestrianId(id);
+                    }
+                    let window = Window::new("yard", last - 7, 1, ids, positions).unwrap();
+                    (window.with_qualities(qualities), forecast)
+                });
+            adapted(&mut AdaptiveRegions::default(), &stream.collect::<Vec<_>>())
+        });
+        assert_eq!(old, new);
     }
 
     #[test]
