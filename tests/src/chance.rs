@@ -4,28 +4,19 @@ use std::time::Duration;
 
 /// A random number generator with its seed.
 #[derive(Debug)]
-pub struct Chance(pub u64);
+pub struct Chance(pub fastrand::Rng);
 
 impl Chance {
     /// A new seed at every call, which is printed.
     pub fn new(what: &str) -> Self {
         let seed = std::hash::BuildHasher::hash_one(&std::hash::RandomState::new(), what);
         eprintln!("{what}: seed {seed}");
-        Self(seed)
-    }
-
-    /// A random number (splitmix64).
-    pub fn number(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+        Self(fastrand::Rng::with_seed(seed))
     }
 
     /// A whole number below `limit`.
     pub fn below(&mut self, limit: u64) -> u64 {
-        self.number() % limit.max(1)
+        self.0.u64(..limit.max(1))
     }
 
     /// A random moment in the `index`-th of `count` equal parts of a time.

@@ -28,14 +28,14 @@ fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]
 }
 
 fn pairs(criterion: &mut Criterion) {
-    let mut numbers = Numbers(1);
+    let mut numbers = Numbers::seeded(1);
     pair::<2>(criterion, &numbers.pedestrian(8), &numbers.pedestrian(8));
     pair::<2>(criterion, &wave(64, 0.0), &wave(64, 0.3));
     pair::<8>(criterion, &wave(256, 0.0), &wave(256, 0.3));
 }
 
 fn search(criterion: &mut Criterion) {
-    let mut numbers = Numbers(2);
+    let mut numbers = Numbers::seeded(2);
     let mut pedestrians = |count| (0..count).map(|_| numbers.pedestrian::<2>(8)).collect::<Vec<_>>();
     let (sequences, queries) = (pedestrians(4096), pedestrians(24));
     let mut group = criterion.benchmark_group("search 8x8x2");

@@ -117,9 +117,8 @@ impl<const D: usize> Blocks<D> {
         self.members.push(lanes);
     }
 
-    /// The steps of `blocks` (indices into [`Blocks::members`]) of a run, block by block.
-    pub(crate) fn samples(&self, run: &BlockRun, blocks: &Range<usize>) -> &[Step<D>] {
-        let step = |block: usize| run.first + (block - run.blocks.start) * run.steps;
-        &self.samples[step(blocks.start)..step(blocks.end)]
+    /// The steps of a run, block by block.
+    pub(crate) fn samples(&self, run: &BlockRun) -> &[Step<D>] {
+        &self.samples[run.first..][..run.blocks.len() * run.steps]
     }
 }

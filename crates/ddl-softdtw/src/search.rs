@@ -7,9 +7,6 @@ use crate::error::{SearchError, SoftDtwError};
 use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite, normalise};
 
-/// Number of queries that are compared with the candidates together.
-const TOGETHER: usize = 8;
-
 /// A candidate found by a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Neighbour {
@@ -89,8 +86,7 @@ impl<const D: usize> SearchIndex<D> {
     /// [`SearchError::Query`] when the query is empty or not finite, or a distance to be returned leaves the range of
     /// `f64`.
     pub fn nearest(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Neighbour>, SearchError> {
-        let mut neighbours = self.search(&[query], n);
-        Ok(neighbours.pop().unwrap_or(Ok(Vec::new()))?)
+        Ok(self.search(query, n)?)
     }
 
     /// [`SearchIndex::nearest`] for many queries, in parallel on the current `rayon` pool. The result does not depend
@@ -102,36 +98,21 @@ impl<const D: usize> SearchIndex<D> {
     where
         S: AsRef<[[f64; D]]> + Sync,
     {
-        let together = |queries: &[S]| {
-            let queries: Vec<_> = queries.iter().map(AsRef::as_ref).collect();
-            self.search(&queries, n)
-        };
         // Collected first, because a parallel collect into a `Result` could return the error of any query.
-        let of_queries: Vec<_> = queries.par_chunks(TOGETHER).flat_map(together).collect();
+        let of_queries = queries.par_iter().map(|query| self.search(query.as_ref(), n));
+        let of_queries: Vec<_> = of_queries.collect();
         let of_queries = of_queries.into_iter().enumerate();
         of_queries
             .map(|(index, neighbours)| neighbours.map_err(|source| SearchError::BatchQuery { index, source }))
             .collect()
     }
 
-    fn search(&self, queries: &[&[[f64; D]]], n: usize) -> Vec<Result<Vec<Neighbour>, SoftDtwError>> {
+    fn search(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Neighbour>, SoftDtwError> {
+        check(query, 'x')?;
         let wanted = n.min(self.len());
-        let checked = queries.iter().map(|query| check(query, 'x'));
-        let checked: Vec<Result<(), SoftDtwError>> = checked.collect();
         let sieve = self.sieve.as_ref().filter(|_| wanted > 0 && wanted < self.len());
-        let valid = queries.iter().zip(&checked);
-        let valid: Vec<_> = valid.filter(|(_, c)| c.is_ok()).map(|(q, _)| *q).collect();
-        let mut survivors = sieve
-            .map(|sieve| sieve.survivors(Dispatch::detect(), &valid, wanted))
-            .unwrap_or_default()
-            .into_iter();
-        let answer = |(query, checked): (&&[[f64; D]], Result<(), SoftDtwError>)| {
-            checked?;
-            let survivors = survivors.next().flatten();
-            let survivors = survivors.unwrap_or_else(|| (0..self.len()).collect());
-            self.rank(query, &survivors, wanted)
-        };
-        queries.iter().zip(checked).map(answer).collect()
+        let survivors = sieve.and_then(|sieve| sieve.survivors(Dispatch::detect(), query, wanted));
+        self.rank(query, &survivors.unwrap_or_else(|| (0..self.len()).collect()), wanted)
     }
 
     /// The `wanted` nearest of the candidates at `indices`, nearest first, ties by index.

@@ -2,8 +2,6 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use std::ops;
-
 use ddl_simd::{Dispatch, InstructionSet, Kernel, LANES, Lanes, Simd};
 use fearless_simd::prelude::*;
 
@@ -11,10 +9,6 @@ use crate::blocks::{BlockRun, Blocks, FREE, Step};
 use crate::range::Range;
 use crate::recursion::{GROUP, load, recursion};
 use crate::select::Selection;
-
-/// Number of blocks that several queries process before the next blocks. They and the working memory fit the
-/// second-level cache.
-const TILE: usize = 256;
 
 /// The candidates in blocks, with the weights that normalise their scores.
 #[derive(Clone, Debug)]
@@ -58,37 +52,20 @@ impl<const D: usize> CandidateSieve<D> {
         })
     }
 
-    /// For each query, the candidates that may be among the `wanted` nearest, or `None` if `f32` is not accurate
-    /// enough.
-    pub(crate) fn survivors(
-        &self,
-        dispatch: Dispatch,
-        queries: &[&[[f64; D]]],
-        wanted: usize,
-    ) -> Vec<Option<Vec<usize>>> {
-        let set = dispatch.instruction_set();
-        let searches = queries.iter().map(|query| self.search(set, query, wanted));
-        let mut searches: Vec<Option<Search<D>>> = searches.collect();
+    /// The candidates that may be among the `wanted` nearest of a query, or `None` if `f32` is not accurate enough.
+    pub(crate) fn survivors(&self, dispatch: Dispatch, query: &[[f64; D]], wanted: usize) -> Option<Vec<usize>> {
+        let mut search = self.search(dispatch.instruction_set(), query, wanted)?;
         for run in &self.blocks.runs {
-            let mut first = run.blocks.start;
-            while first < run.blocks.end {
-                let blocks = first..run.blocks.end.min(first + TILE);
-                first = blocks.end;
-                for search in searches.iter_mut().flatten() {
-                    self.sweep(dispatch, run, blocks.clone(), search);
-                }
-            }
+            self.sweep(dispatch, run, &mut search);
         }
-        searches
-            .into_iter()
-            .map(|search| {
-                let search = search?;
-                let range = search.range;
-                let margin = |nth_log2| range.margin_log2(nth_log2, search.largest, D);
-                let smallest = range.smallest_accurate_log2();
-                search.selection.survivors(smallest, margin)
-            })
-            .collect()
+        let Search {
+            range,
+            largest,
+            selection,
+            ..
+        } = search;
+        let margin = |nth_log2| range.margin_log2(nth_log2, largest, D);
+        selection.survivors(range.smallest_accurate_log2(), margin)
     }
 
     /// The state of a query before its first block, or `None` if its scores would not be accurate.
@@ -106,13 +83,13 @@ impl<const D: usize> CandidateSieve<D> {
         })
     }
 
-    fn sweep(&self, dispatch: Dispatch, run: &BlockRun, blocks: ops::Range<usize>, search: &mut Search<D>) {
+    fn sweep(&self, dispatch: Dispatch, run: &BlockRun, search: &mut Search<D>) {
         dispatch.run(CandidateSweep {
             query: &search.steps,
             steps: run.steps,
-            samples: self.blocks.samples(run, &blocks),
-            weights: &self.weights[blocks.clone()],
-            members: &self.blocks.members[blocks],
+            samples: self.blocks.samples(run),
+            weights: &self.weights[run.blocks.clone()],
+            members: &self.blocks.members[run.blocks.clone()],
             start: search.start,
             selection: &mut search.selection,
         });

@@ -13,7 +13,7 @@ const GIB: u64 = 1 << 30;
 
 /// A crowd in a square for some frames, in which every pedestrian walks straight at up to 1.4 m/s.
 fn crowd(count: usize, frames: i64) -> Vec<own_tracks::Row> {
-    let mut chance = Chance(count as u64);
+    let mut chance = Chance(fastrand::Rng::with_seed(count as u64));
     let side = (count as f64 / DENSITY).sqrt();
     let mut number = |least: f64, most: f64| least + (most - least) * chance.below(1 << 20) as f64 / f64::from(1 << 20);
     let pedestrian = |_| [(0.0, side), (0.0, side), (-1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| number(a, b));

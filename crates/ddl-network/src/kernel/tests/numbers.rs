@@ -1,22 +1,19 @@
 //! Random numbers for tests, comparison of results, and expected panics.
 
+use fastrand::Rng;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// A generator of reproducible numbers (`SplitMix64`).
-pub(crate) struct Numbers(pub(crate) u64);
+/// A generator of reproducible numbers.
+pub(crate) struct Numbers(Rng);
 
 impl Numbers {
-    pub(crate) fn word(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let word = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        word ^ (word >> 31)
+    pub(crate) fn seeded(seed: u64) -> Self {
+        Self(Rng::with_seed(seed))
     }
 
     /// Uniform in [−`bound`, `bound`].
     pub(crate) fn even(&mut self, count: usize, bound: f32) -> Vec<f32> {
-        let number = |word: u64| bound * ((word >> 40) as f32 / 8_388_608.0 - 1.0);
-        (0..count).map(|_| number(self.word())).collect()
+        (0..count).map(|_| bound * (2.0 * self.0.f32() - 1.0)).collect()
     }
 
     /// Visibility masks: a pedestrian sees itself, and others with probability 3/4.
@@ -24,7 +21,7 @@ impl Numbers {
         let mut visible = Vec::new();
         for size in sizes.repeat(frames) {
             for i in 0..size {
-                visible.extend((0..size).map(|j| i == j || !self.word().is_multiple_of(4)));
+                visible.extend((0..size).map(|j| i == j || self.0.u8(..4) > 0));
             }
         }
         visible
