@@ -5,7 +5,7 @@
 use ddl_data::{Dataset, OBSERVED, Window, WindowRule};
 use ddl_network::backbone::{Backbone, output_layer};
 use ddl_network::backend::{Backend, Memory};
-use ddl_network::weights::{EncoderLayer, Layout, Linear, Sizes};
+use ddl_network::weights::{EncoderLayer, Layout, Linear, Sizes, Weights};
 use ddl_network::{
     DeviceChoice, MotionNetwork, NetworkError, NetworkFrame, Noise, StarConfig, StepRule, TrainingConfig, Variant,
 };
@@ -129,9 +129,10 @@ fn a_custom_backbone_is_trained_and_forecasts_without_libtorch() {
     let weights = trainer.weights().unwrap();
     let exact = torch(Kind::Double);
     exact.parameters().set(&weights).unwrap();
-    let untrained = MotionNetwork::with_backbone(config(), 7, Recurrent::new).unwrap();
+    let untrained = MotionNetwork::with_backbone(config(), Recurrent::new, |layout| Ok(Weights::seeded(layout, 7)));
+    let untrained = untrained.unwrap();
     let before = forecasts(&untrained).unwrap();
-    let plain = untrained.with_weights(weights).unwrap();
+    let plain = MotionNetwork::with_backbone(config(), Recurrent::new, |_| Ok(weights)).unwrap();
     let ours = forecasts(&plain).unwrap();
     let apart = |ours: &[WindowRollout], reference: &[WindowRollout]| {
         let positions = |rollouts: &[WindowRollout]| -> Vec<[f64; 2]> {

@@ -7,7 +7,6 @@ use crate::forecast::batch::{BatchRollout, ForecastBatch};
 use crate::forecast::emission::NoiseSpread;
 use crate::forecast::forecast_windows::ForecastWindows;
 use crate::forecast::pass::Pass;
-use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Linear, Weights};
 use crate::{NetworkError, StarConfig};
 use std::sync::Arc;
@@ -33,7 +32,7 @@ impl MotionNetwork {
     /// # Errors
     /// [`NetworkError::Config`] when the configuration is out of range.
     pub fn new(config: StarConfig, seed: u64) -> Result<Self, NetworkError> {
-        Self::reading(config, |layout| Ok(initial(layout, seed)))
+        Self::reading(config, |layout| Ok(Weights::seeded(layout, seed)))
     }
 
     /// A network with the weights that `read` gives for its layout.
@@ -46,24 +45,17 @@ impl MotionNetwork {
         read: impl FnOnce(&Arc<Layout>) -> Result<Weights, NetworkError>,
     ) -> Result<Self, NetworkError> {
         match config.backbone {
-            BackboneKind::Star => Self::build(config, Star::new, read),
-            BackboneKind::Perceptron => Self::build(config, Perceptron::new, read),
+            BackboneKind::Star => Self::with_backbone(config, Star::new, read),
+            BackboneKind::Perceptron => Self::with_backbone(config, Perceptron::new, read),
         }
     }
 
-    /// A network with a custom backbone and seeded initial weights; `make` declares the layers.
+    /// A network with a custom backbone, whose layers `make` declares, and the weights that `read` gives for them, such
+    /// as [`Weights::seeded`].
     ///
     /// # Errors
-    /// [`NetworkError::Config`] when the configuration is out of range.
+    /// As [`reading`](Self::reading).
     pub fn with_backbone<T: Backbone<KernelBackend> + 'static>(
-        config: StarConfig,
-        seed: u64,
-        make: impl FnOnce(&mut Layout, &StarConfig) -> T,
-    ) -> Result<Self, NetworkError> {
-        Self::build(config, make, |layout| Ok(initial(layout, seed)))
-    }
-
-    fn build<T: Backbone<KernelBackend> + 'static>(
         config: StarConfig,
         make: impl FnOnce(&mut Layout, &StarConfig) -> T,
         read: impl FnOnce(&Arc<Layout>) -> Result<Weights, NetworkError>,
@@ -76,8 +68,11 @@ impl MotionNetwork {
         let weights = read(&layout)?;
         weights.check_layout(&layout)?;
         let kernels = Kernels::new(&layout, weights.numbers());
+        let last = &weights.numbers()[output.span()];
+        let noise = config.noise_width as usize;
+        let dynamics = config.variant.dynamics();
         Ok(Self {
-            spread: spread(&config, &weights, output),
+            spread: dynamics.then(|| NoiseSpread::of(last, output.inputs, noise)),
             config,
             weights,
             kernels: Arc::new(kernels),
@@ -85,33 +80,6 @@ impl MotionNetwork {
             output,
         })
     }
-
-    /// The same network with other weights.
-    ///
-    /// # Errors
-    /// [`NetworkError::Shape`] if they have another layout.
-    pub fn with_weights(self, weights: Weights) -> Result<Self, NetworkError> {
-        weights.check_layout(self.weights.layout())?;
-        let layout = weights.layout();
-        let kernels = Kernels::new(layout, weights.numbers());
-        Ok(Self {
-            spread: spread(&self.config, &weights, self.output),
-            kernels: Arc::new(kernels),
-            weights,
-            ..self
-        })
-    }
-}
-
-fn initial(layout: &Arc<Layout>, seed: u64) -> Weights {
-    Weights::initial(layout, stream(seed, Stage::Weights, 0))
-}
-
-fn spread(config: &StarConfig, weights: &Weights, output: Linear) -> Option<NoiseSpread> {
-    let numbers = &weights.numbers()[output.span()];
-    let noise = config.noise_width as usize;
-    let dynamics = config.variant.dynamics();
-    dynamics.then(|| NoiseSpread::of(numbers, output.inputs, noise))
 }
 
 impl ForecastWindows for MotionNetwork {

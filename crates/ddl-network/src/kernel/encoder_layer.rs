@@ -29,7 +29,7 @@ impl EncoderKernel {
     ) -> (Buffer, ForwardResults) {
         let [query, key, value] = self.project(0, x);
         let inputs = [&query[..], &key, &value];
-        let attended = self.spatial.forward(inputs, frames, dropouts.weights, keep);
+        let attended = self.attention.spatial_forward(inputs, frames, dropouts.weights, keep);
         let newest = CachedKeyValues { key, value };
         let attention = AttentionResults {
             query,
@@ -60,15 +60,15 @@ impl EncoderKernel {
         let inputs = [&query[..], &newest.key, &newest.value];
         let mut of_inputs = [0; 3].map(|_| Buffer::any(x.len()));
         let gradients = of_inputs.each_mut().map(|gradient| &mut gradient[..]);
-        self.spatial
-            .backward(inputs, frames, dropouts.weights, attended, &of_mixed, gradients);
+        self.attention
+            .spatial_backward(inputs, frames, dropouts.weights, attended, &of_mixed, gradients);
         let of_inputs = of_inputs.each_ref().map(|gradient| &gradient[..]);
         self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx
     }
 
     /// The layer with temporal attention: the newest token attends to the cached tokens and to itself.
-    /// `x` `[rows, width]`; tokens in `cache` have as many rows, or a divisor, as in [`TemporalAttention::forward`]
+    /// `x` `[rows, width]`; tokens in `cache` have as many rows, or a divisor, as in `AttentionKernel::temporal_forward`
     /// -> y `[rows, width]`. Without `keep`, the results serve no backward pass.
     pub(crate) fn temporal_attention(
         &self,
@@ -80,7 +80,8 @@ impl EncoderKernel {
         let [query, key, value] = self.project(0, x);
         let newest = CachedKeyValues { key, value };
         let mut mixed = Buffer::any(x.len());
-        self.temporal.forward(&query, &views(cache), newest.view(), &mut mixed);
+        self.attention
+            .temporal_forward(&query, &views(cache), newest.view(), &mut mixed);
         let attention = AttentionResults {
             query,
             newest,
@@ -112,8 +113,8 @@ impl EncoderKernel {
         let mut of_newest = CachedKeyValues::zeros(x.len());
         let of_cache = of_cache.iter_mut().map(|token| token.view_mut());
         let of_tokens = of_cache.chain([of_newest.view_mut()]).collect();
-        self.temporal
-            .backward(query, &views(cache), newest.view(), &of_mixed, &mut of_query, of_tokens);
+        self.attention
+            .temporal_backward(query, &views(cache), newest.view(), &of_mixed, &mut of_query, of_tokens);
         let of_inputs = [&of_query[..], &of_newest.key, &of_newest.value];
         self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx

@@ -1,7 +1,9 @@
 //! The layout of heads in lanes: eight heads of each of two pedestrians, and the four numbers of each head.
 
 use crate::kernel::quads::{HALF, HalfQuad, Quads as _};
-use ddl_simd::{DEPTH, Simd, Vectors};
+#[cfg(test)]
+use ddl_simd::InstructionSet;
+use ddl_simd::{DEPTH, Dispatch, Simd, Vectors};
 
 /// Numbers of a head.
 pub(crate) const HEAD_WIDTH: usize = DEPTH;
@@ -13,6 +15,29 @@ pub(super) const SCALE: f32 = 0.5;
 /// The numbers of a group of heads in one row, a half of a vector at a time.
 type Halves = [[f32; HALF]; DEPTH];
 const ZERO_HALVES: Halves = HalfQuad::ZERO.0;
+
+/// Multi-head attention. Weights below 2^−96 of the largest count as 0. Results do not depend on the number of threads;
+/// those of different instruction sets agree up to rounding.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct AttentionKernel {
+    pub(super) heads: Heads,
+    pub(super) dispatch: Dispatch,
+}
+
+impl AttentionKernel {
+    pub(crate) fn new(heads: usize) -> Self {
+        Self {
+            heads: Heads::new(heads),
+            dispatch: Dispatch::detect(),
+        }
+    }
+
+    #[cfg(test)]
+    pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
+        let dispatch = Dispatch::new(set)?;
+        Some(Self { dispatch, ..self })
+    }
+}
 
 /// The number of heads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,12 +10,10 @@ mod tests;
 
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
-use crate::kernel::heads::Heads;
+use crate::kernel::heads::AttentionKernel;
 use crate::kernel::scenes::Frames;
 use backward::SceneBackward;
-#[cfg(test)]
-use ddl_simd::InstructionSet;
-use ddl_simd::{Dispatch, Lanes};
+use ddl_simd::Lanes;
 use dropout::WeightDecisions;
 use forward::SceneForward;
 use queries::{SceneTask, run_buffered};
@@ -23,18 +21,7 @@ use queries::{SceneTask, run_buffered};
 /// Cost of a pair of a query and a key, in multiplications.
 const WORK_OF_A_PAIR: usize = 50;
 
-/// Multi-head attention within scenes.
-///
-/// For each head, `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that are visible to i. `d_ij`
-/// is the factor of [`Dropout`], or 1 without it. Weights below 2^−96 of the largest count as 0. Results do not depend
-/// on the number of threads; those of different instruction sets agree up to rounding.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SpatialAttention {
-    heads: Heads,
-    dispatch: Dispatch,
-}
-
-/// The output of an attention, and what the backward pass of [`SpatialAttention`] needs in addition.
+/// The output of an attention, and what the backward pass of [`AttentionKernel::spatial_forward`] needs in addition.
 #[derive(Clone, Debug)]
 pub(crate) struct Attended {
     /// Mixed values, `[B, P, heads, head width]`.
@@ -44,32 +31,21 @@ pub(crate) struct Attended {
     pub(crate) normalisers: Vec<[Lanes; 2]>,
 }
 
-impl SpatialAttention {
-    pub(crate) fn new(heads: usize) -> Self {
-        Self {
-            heads: Heads::new(heads),
-            dispatch: Dispatch::detect(),
-        }
-    }
-
-    #[cfg(test)]
-    pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
-        let dispatch = Dispatch::new(set)?;
-        Some(Self { dispatch, ..self })
-    }
-
-    /// Mixes the values of the visible pedestrians.
+impl AttentionKernel {
+    /// Mixes the values of the visible pedestrians. For each head, `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width)
+    /// v_j` over the j that are visible to i. `d_ij` is the factor of [`Dropout`], or 1 without it.
+    ///
     /// `inputs`: queries, keys and values, `[B, P, heads, head width]` each, with all pedestrians P of the scenes; 1 or
     /// B `frames`.
-    /// [`backward`](Self::backward) panics if the result was made without `keep`.
-    pub(crate) fn forward(
+    /// [`spatial_backward`](Self::spatial_backward) panics if the result was made without `keep`.
+    pub(crate) fn spatial_forward(
         &self,
         inputs: [&[f32]; 3],
         frames: Frames<'_>,
         dropout: Option<Dropout>,
         keep: bool,
     ) -> Attended {
-        let entries = self.check(inputs, frames);
+        let entries = self.check_scenes(inputs, frames);
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
         let normalisers = if keep { entries * self.normalisers(frames) } else { 0 };
@@ -97,10 +73,10 @@ impl SpatialAttention {
         attended
     }
 
-    /// The gradient of the inputs of [`SpatialAttention::forward`] from that of its output.
+    /// The gradient of the inputs of [`AttentionKernel::spatial_forward`] from that of its output.
     /// `mixed_gradient` `[B, P, heads, head width]` -> `gradients` of the shapes of the inputs, overwritten.
     /// The first four arguments must be those of a forward pass with `keep`.
-    pub(crate) fn backward(
+    pub(crate) fn spatial_backward(
         &self,
         inputs: [&[f32]; 3],
         frames: Frames<'_>,
@@ -109,7 +85,7 @@ impl SpatialAttention {
         mixed_gradient: &[f32],
         mut gradients: [&mut [f32]; 3],
     ) {
-        let entries = self.check(inputs, frames);
+        let entries = self.check_scenes(inputs, frames);
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
         let normalisers = entries * self.normalisers(frames);
@@ -150,7 +126,7 @@ impl SpatialAttention {
         self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
     }
 
-    fn check(&self, inputs: [&[f32]; 3], frames: Frames<'_>) -> usize {
+    fn check_scenes(&self, inputs: [&[f32]; 3], frames: Frames<'_>) -> usize {
         let entry = frames.scenes().pedestrians() * self.heads.row();
         for input in inputs {
             let whole = !input.is_empty() && input.len().is_multiple_of(entry) && input.len() == inputs[0].len();

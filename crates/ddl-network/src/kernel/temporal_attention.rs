@@ -6,12 +6,9 @@ mod sixteen_heads;
 #[cfg(test)]
 mod tests;
 
-use crate::kernel::heads::Heads;
+use crate::kernel::heads::AttentionKernel;
 use crate::kernel::threads::run_each;
 use backward::TemporalBackward;
-use ddl_simd::Dispatch;
-#[cfg(test)]
-use ddl_simd::InstructionSet;
 use forward::TemporalForward;
 pub(crate) use sixteen_heads::{KeyValue, KeyValueMut};
 
@@ -21,39 +18,23 @@ const ROWS_AT_ONCE: usize = 64;
 /// Cost of one number of a token, in multiplications.
 const WORK_OF_A_NUMBER: usize = 8;
 
-/// Multi-head attention. The query of each row attends to t cached tokens and to its newest token.
-///
-/// For each row and head, `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e. Weights below
-/// 2^−96 of the largest count as 0. Results do not depend on the number of threads; those of different instruction sets
-/// agree up to rounding.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TemporalAttention {
-    heads: Heads,
-    dispatch: Dispatch,
-}
-
-impl TemporalAttention {
-    pub(crate) fn new(heads: usize) -> Self {
-        Self {
-            heads: Heads::new(heads),
-            dispatch: Dispatch::detect(),
-        }
-    }
-
-    #[cfg(test)]
-    pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
-        let dispatch = Dispatch::new(set)?;
-        Some(Self { dispatch, ..self })
-    }
-
-    /// Mixes the values of the cached tokens and the query's newest token.
+impl AttentionKernel {
+    /// Mixes the values of the t cached tokens and of the query's newest token. For each row and head, `mixed = Σ_e
+    /// softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e.
+    ///
     /// `query` and `newest` `[rows, heads, head width]`; each token of `cache` the same, or with a divisor of the rows
     /// -> `mixed` `[rows, heads, head width]`, overwritten.
     ///
     /// The rows of a token with fewer rows are repeated: row r of the query reads its row r mod its number of rows. So
     /// many hypotheses can share one cache.
-    pub(crate) fn forward(&self, query: &[f32], cache: &[KeyValue<'_>], newest: KeyValue<'_>, mixed: &mut [f32]) {
-        self.check(query, newest, mixed);
+    pub(crate) fn temporal_forward(
+        &self,
+        query: &[f32],
+        cache: &[KeyValue<'_>],
+        newest: KeyValue<'_>,
+        mixed: &mut [f32],
+    ) {
+        self.check_tokens(query, newest, mixed);
         for token in cache {
             let whole = !token.key.is_empty()
                 && token.key.len() == token.value.len()
@@ -73,10 +54,10 @@ impl TemporalAttention {
         run_each(self.dispatch, jobs, work(query, cache));
     }
 
-    /// Adds the gradients of the inputs of [`TemporalAttention::forward`], from that of its output.
+    /// Adds the gradients of the inputs of [`AttentionKernel::temporal_forward`], from that of its output.
     /// All shapes are `[rows, heads, head width]`, also those of the cached tokens. `token_gradients` are those of the
     /// cached tokens, then of the newest token.
-    pub(crate) fn backward(
+    pub(crate) fn temporal_backward(
         &self,
         query: &[f32],
         cache: &[KeyValue<'_>],
@@ -85,11 +66,11 @@ impl TemporalAttention {
         mut query_gradient: &mut [f32],
         mut token_gradients: Vec<KeyValueMut<'_>>,
     ) {
-        self.check(query, newest, mixed_gradient);
+        self.check_tokens(query, newest, mixed_gradient);
         assert_eq!(query_gradient.len(), query.len(), "gradient of queries");
         assert_eq!(cache.len() + 1, token_gradients.len(), "cached tokens");
         for (token, gradient) in cache.iter().chain([&newest]).zip(&token_gradients) {
-            self.check(query, *token, gradient.key);
+            self.check_tokens(query, *token, gradient.key);
             assert_eq!(gradient.value.len(), query.len(), "gradient of values");
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
@@ -110,7 +91,7 @@ impl TemporalAttention {
         run_each(self.dispatch, jobs.into_iter(), work(query, cache));
     }
 
-    fn check(&self, query: &[f32], newest: KeyValue<'_>, mixed: &[f32]) {
+    fn check_tokens(&self, query: &[f32], newest: KeyValue<'_>, mixed: &[f32]) {
         assert_eq!(query.len() % self.heads.row(), 0, "rows of queries");
         for (what, other) in [("key", newest.key), ("value", newest.value), ("mixed", mixed)] {
             assert_eq!(other.len(), query.len(), "{what}");

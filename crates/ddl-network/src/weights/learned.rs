@@ -1,6 +1,7 @@
 //! The weights of a network with their names.
 
 use crate::NetworkError;
+use crate::seed::{Stage, stream};
 use crate::weights::layout::{Layout, TensorLayout};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
@@ -22,7 +23,12 @@ impl Weights {
         Self { layout, numbers }
     }
 
-    /// Initial weights, drawn in the order of the tensors; the same on every machine.
+    /// The initial weights of a network with this seed; the same on every machine.
+    pub fn seeded(layout: &Arc<Layout>, seed: u64) -> Self {
+        Self::initial(layout, stream(seed, Stage::Weights, 0))
+    }
+
+    /// Initial weights, drawn in the order of the tensors.
     pub(crate) fn initial(layout: &Arc<Layout>, rng: ChaCha8Rng) -> Self {
         let numbers = layout.initial(rng).into_iter().map(|x| x as f32);
         Self::new(Arc::clone(layout), numbers.collect())

@@ -114,8 +114,8 @@ fn configurations_out_of_range_are_refused() {
 #[test]
 fn weights_of_another_network_are_refused() {
     let others = network(Variant::Star).copy_weights().unwrap();
-    let refused = network(Variant::Full).with_weights(others.clone());
-    let error = refused.unwrap_err();
+    let config = network(Variant::Full).config().clone();
+    let error = MotionNetwork::reading(config, |_| Ok(others.clone())).unwrap_err();
     assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
     let error = ProposalNetwork::reading(ProposalConfig::default(), |_| Ok(others)).unwrap_err();
     assert!(matches!(error, NetworkError::Shape { .. }), "{error}");

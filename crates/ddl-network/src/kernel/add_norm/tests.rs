@@ -58,7 +58,7 @@ struct NormCase {
 
 impl NormCase {
     fn new(seed: u64, width: usize, rows: usize) -> Self {
-        let mut numbers = Numbers(seed);
+        let mut numbers = Numbers::seeded(seed);
         Self {
             width,
             x: numbers.even(rows * width, 2.0),

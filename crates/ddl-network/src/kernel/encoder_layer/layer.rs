@@ -4,9 +4,7 @@ use crate::kernel::add_norm::AddNorm;
 use crate::kernel::affine::Affine;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::feed_forward::FeedForward;
-use crate::kernel::heads::HEAD_WIDTH;
-use crate::kernel::spatial_attention::SpatialAttention;
-use crate::kernel::temporal_attention::TemporalAttention;
+use crate::kernel::heads::{AttentionKernel, HEAD_WIDTH};
 use ddl_simd::Dispatch;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
@@ -24,8 +22,7 @@ pub(crate) struct EncoderKernel {
     pub(super) norm1: AddNorm,
     pub(super) norm2: AddNorm,
     pub(super) feed_forward: FeedForward,
-    pub(super) spatial: SpatialAttention,
-    pub(super) temporal: TemporalAttention,
+    pub(super) attention: AttentionKernel,
     pub(super) dispatch: Dispatch,
 }
 
@@ -48,8 +45,7 @@ impl EncoderKernel {
             norm1: AddNorm::new(width),
             norm2: AddNorm::new(width),
             feed_forward: FeedForward::zeros(width, hidden),
-            spatial: SpatialAttention::new(heads),
-            temporal: TemporalAttention::new(heads),
+            attention: AttentionKernel::new(heads),
             dispatch: Dispatch::detect(),
         }
     }
@@ -58,8 +54,7 @@ impl EncoderKernel {
     pub(in crate::kernel) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
         Some(Self {
             feed_forward: self.feed_forward.with_instructions(set)?,
-            spatial: self.spatial.with_instructions(set)?,
-            temporal: self.temporal.with_instructions(set)?,
+            attention: self.attention.with_instructions(set)?,
             dispatch: Dispatch::new(set)?,
             ..self
         })

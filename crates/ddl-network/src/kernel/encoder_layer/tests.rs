@@ -31,7 +31,7 @@ type Results = [Vec<f32>; 4];
 
 impl LayerCase {
     fn new(seed: u64, sizes: Sizes, scenes: &[usize], p: f64) -> Self {
-        let mut numbers = Numbers(seed);
+        let mut numbers = Numbers::seeded(seed);
         let visible = numbers.visible(scenes, 1);
         let scenes = Scenes::new(scenes, lists(scenes, &visible));
         let count = 2 * scenes.pedestrians() * sizes.width;

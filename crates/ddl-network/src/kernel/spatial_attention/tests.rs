@@ -1,7 +1,7 @@
 //! Comparison with the formula in double precision.
 
+use crate::kernel::heads::AttentionKernel;
 use crate::kernel::heads::HEAD_WIDTH;
-use crate::kernel::spatial_attention::SpatialAttention;
 use crate::kernel::spatial_attention::dropout::WeightDecisions;
 use crate::kernel::spatial_attention::queries::TWOS_AT_ONCE;
 use crate::kernel::tests::attention::Attention;
@@ -23,7 +23,7 @@ struct SceneCase {
 
 impl SceneCase {
     fn new(seed: u64, heads: usize, sizes: &[usize], (entries, frames): (usize, usize), bound: f32) -> Self {
-        let mut numbers = Numbers(seed);
+        let mut numbers = Numbers::seeded(seed);
         let pedestrians: usize = sizes.iter().sum();
         let rows = entries * pedestrians * heads * HEAD_WIDTH;
         Self {
@@ -38,13 +38,13 @@ impl SceneCase {
     }
 
     fn run(&self, set: InstructionSet) -> (Vec<f32>, Vec<f32>) {
-        let attention = SpatialAttention::new(self.heads);
+        let attention = AttentionKernel::new(self.heads);
         let attention = attention.with_instructions(set).unwrap();
         let scenes = Scenes::new(&self.sizes, lists(&self.sizes, &self.visible));
         let frames = scenes.throughout();
-        let attended = attention.forward(self.inputs(), frames, self.dropout, true);
+        let attended = attention.spatial_forward(self.inputs(), frames, self.dropout, true);
         let mut gradients = [0; 3].map(|_| vec![f32::NAN; self.gradient.len()]);
-        attention.backward(
+        attention.spatial_backward(
             self.inputs(),
             frames,
             self.dropout,

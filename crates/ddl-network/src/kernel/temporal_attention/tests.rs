@@ -1,7 +1,8 @@
 //! Comparison with the formula in double precision.
 
+use crate::kernel::heads::AttentionKernel;
 use crate::kernel::heads::HEAD_WIDTH;
-use crate::kernel::temporal_attention::{KeyValue, KeyValueMut, TemporalAttention};
+use crate::kernel::temporal_attention::{KeyValue, KeyValueMut};
 use crate::kernel::tests::attention::Attention;
 use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
 use ddl_simd::{Dispatch, InstructionSet};
@@ -26,7 +27,7 @@ const BEFORE: f32 = 0.25;
 
 impl TemporalCase {
     fn new(seed: u64, heads: usize, rows: usize, cached: usize, bound: f32) -> Self {
-        let mut numbers = Numbers(seed);
+        let mut numbers = Numbers::seeded(seed);
         let count = rows * heads * HEAD_WIDTH;
         let mut two = || [numbers.even(count, bound), numbers.even(count, bound)];
         Self {
@@ -38,19 +39,19 @@ impl TemporalCase {
     }
 
     fn run(&self, set: InstructionSet) -> TemporalResults<f32> {
-        let attention = TemporalAttention::new(self.heads);
+        let attention = AttentionKernel::new(self.heads);
         let attention = attention.with_instructions(set).unwrap();
         let tokens = self.tokens.iter().map(|[key, value]| KeyValue { key, value });
         let mut cache: Vec<KeyValue<'_>> = tokens.collect();
         let newest = cache.pop().unwrap();
         let mut mixed = vec![f32::NAN; self.query.len()];
-        attention.forward(&self.query, &cache, newest, &mut mixed);
+        attention.temporal_forward(&self.query, &cache, newest, &mut mixed);
         let before = vec![BEFORE; self.query.len()];
         let mut query = before.clone();
         let mut tokens = vec![[before.clone(), before]; self.tokens.len()];
         let gradients = tokens.iter_mut().map(|[key, value]| KeyValueMut { key, value });
         let gradients = gradients.collect();
-        attention.backward(&self.query, &cache, newest, &self.gradient, &mut query, gradients);
+        attention.temporal_backward(&self.query, &cache, newest, &self.gradient, &mut query, gradients);
         TemporalResults { mixed, query, tokens }
     }
 
@@ -140,7 +141,7 @@ fn a_memory_of_fewer_rows_is_repeated() {
         let mut cache: Vec<KeyValue<'_>> = tokens.collect();
         let newest = cache.pop().unwrap();
         let mut mixed = vec![0.0; whole.len()];
-        TemporalAttention::new(8).forward(&case.query, &cache, newest, &mut mixed);
+        AttentionKernel::new(8).temporal_forward(&case.query, &cache, newest, &mut mixed);
         assert!(bits(&mixed) == bits(&whole), "{rows} rows");
     }
 }

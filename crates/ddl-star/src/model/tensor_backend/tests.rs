@@ -230,7 +230,7 @@ fn kernels_give_the_forecasts_of_libtorch() {
         let mut flat = torch.parameters().flat.shallow_clone();
         flat *= 1.3;
         let weights = torch.parameters().to_weights().unwrap();
-        let plain = plain.with_weights(weights).unwrap();
+        let plain = MotionNetwork::reading(config.clone(), |_| Ok(weights)).unwrap();
         agree(&plain, torch, &[&bounded]);
         let change = apart(&answers(&plain, &bounded), &before);
         assert!(change > 2e-2, "{name}: {change}");
