@@ -56,7 +56,7 @@ pub(crate) fn measure_among(
         let noise = ConstantVelocity::AngularNoise { seed: NOISE_SEED };
         rows.push(row(&noise, Some(NOISE_SEED))?);
     }
-    rows.push(row(&ConstantAcceleration::Bounded, None)?);
+    rows.push(row(&ConstantAcceleration, None)?);
     rows.push(row(&SocialForce, None)?);
     if conditions.protocol.gives_future() {
         rows.push(row(&StraightLine(TrueEndpoint), None)?);

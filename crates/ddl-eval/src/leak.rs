@@ -101,6 +101,6 @@ mod tests {
         let frame = OBSERVED - 1;
         assert_eq!(find(&Peeks { frame }, &window).unwrap(), None);
         assert_eq!(find(&SocialForce, &window).unwrap(), None);
-        assert_eq!(find(&ConstantAcceleration::Bounded, &window).unwrap(), None);
+        assert_eq!(find(&ConstantAcceleration, &window).unwrap(), None);
     }
 }

@@ -7,25 +7,16 @@ use crate::metric::displacement::minus;
 /// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres per frame and
 /// `a = v - (p(7) - p(6))` in metres per frame squared.
 ///
-/// [`Unbounded`](Self::Unbounded) is the literature's definition. [`Bounded`](Self::Bounded) is at most as fast as the
-/// fastest of the 7 observed steps, and stops where it would turn back.
+/// It is at most as fast as the fastest of the 7 observed steps, and stops where it would turn back.
 ///
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction", RA-L 2020.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ConstantAcceleration {
-    /// The definition of the literature, without bounds.
-    Unbounded,
-    /// At most as fast as the fastest observed step, and without turning back.
-    Bounded,
-}
+pub struct ConstantAcceleration;
 
 impl Forecaster for ConstantAcceleration {
     fn name(&self) -> String {
-        match self {
-            Self::Unbounded => "constant acceleration".to_owned(),
-            Self::Bounded => "constant acceleration (bounded)".to_owned(),
-        }
+        "constant acceleration (bounded)".to_owned()
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
@@ -40,14 +31,12 @@ impl Forecaster for ConstantAcceleration {
             let mut stands = false;
             for _ in 0..HORIZON {
                 step = [step[0] + acceleration[0], step[1] + acceleration[1]];
-                if *self == Self::Bounded {
-                    stands |= step[0] * last[0] + step[1] * last[1] < 0.0;
-                    let speed = length(step);
-                    if stands {
-                        step = [0.0, 0.0];
-                    } else if speed > fastest {
-                        step = step.map(|c| c * fastest / speed);
-                    }
+                stands |= step[0] * last[0] + step[1] * last[1] < 0.0;
+                let speed = length(step);
+                if stands {
+                    step = [0.0, 0.0];
+                } else if speed > fastest {
+                    step = step.map(|c| c * fastest / speed);
                 }
                 here = [here[0] + step[0], here[1] + step[1]];
                 positions.push(here);
@@ -68,19 +57,14 @@ mod tests {
     use super::*;
     use crate::fixture::of_tracks;
 
-    /// The position after 12 frames, computed by hand. From (7, -0.1) with v = (1, 0) and a = (0, 0.1): 12 m along x
-    /// and 0.1 * 12 * 13 / 2 = 7.8 m along y. Steps of 1 m, the last of 0.75 m: unbounded it turns back by 12 * 0.75 -
-    /// 0.25 * 78 = -10.5 m; bounded, steps of 0.5, 0.25 and 0 m follow. Steps of 0.5 m, one of 0.6 m, the last of
-    /// 0.55 m: it gets faster, bounded by 0.6 m.
+    /// The position after 12 frames, computed by hand. Steps of 1 m, the last of 0.75 m: steps of 0.5, 0.25 and 0 m
+    /// follow. Steps of 0.5 m, one of 0.6 m, the last of 0.55 m: it gets faster, bounded by 0.6 m.
     #[test]
     fn ends_by_hand() {
-        let (free, bounded) = (ConstantAcceleration::Unbounded, ConstantAcceleration::Bounded);
-        for (forecaster, usual, (at, other), last, expected) in [
-            (free, 1.0, (5, [1.0, -0.1]), 1.0, [19.0, 7.7]),
-            (free, 1.0, (5, [1.0, 0.0]), 0.75, [6.75 - 10.5, 0.0]),
-            (bounded, 1.0, (5, [1.0, 0.0]), 0.75, [7.5, 0.0]),
-            (bounded, 0.5, (2, [0.6, 0.0]), 0.55, [3.65 + 12.0 * 0.6, 0.0]),
-            (bounded, 0.0, (5, [0.0, 0.0]), 0.0, [0.0, 0.0]),
+        for (usual, (at, other), last, expected) in [
+            (1.0, (5, [1.0, 0.0]), 0.75, [7.5, 0.0]),
+            (0.5, (2, [0.6, 0.0]), 0.55, [3.65 + 12.0 * 0.6, 0.0]),
+            (0.0, (5, [0.0, 0.0]), 0.0, [0.0, 0.0]),
         ] {
             let mut track = vec![[0.0, 0.0]];
             for t in 0..7 {
@@ -89,7 +73,7 @@ mod tests {
                 track.push([track[t][0] + step[0], track[t][1] + step[1]]);
             }
             let window = of_tracks(vec![track]);
-            let end = forecaster.forecast(&window).unwrap().hypothesis(0, 0)[11];
+            let end = ConstantAcceleration.forecast(&window).unwrap().hypothesis(0, 0)[11];
             assert_relative_eq!(end[0], expected[0], epsilon = 1e-9);
             assert_relative_eq!(end[1], expected[1], epsilon = 1e-9);
         }
