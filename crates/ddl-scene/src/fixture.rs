@@ -1,7 +1,9 @@
 //! Scenes for tests.
 
 use crate::{Futures, Plan, PlanPoint};
-use ddl_core::{Forecast, HORIZON, OBSERVED, ObservationQuality, Pace, PedestrianId, Position, RegionTable, Spread, Window};
+use ddl_core::{
+    Forecast, HORIZON, OBSERVED, ObservationQuality, Pace, PedestrianId, Position, RegionTable, Spread, Window,
+};
 
 /// Pedestrians that stood and then go straight on: `[N][K]` velocities (m/s); the spread grows to `[N]` scales (m).
 pub(crate) fn futures(starts: &[Position], velocities: &[Vec<Position>], weights: &[f64], scales: &[f64]) -> Futures {
@@ -29,7 +31,7 @@ pub(crate) fn futures(starts: &[Position], velocities: &[Vec<Position>], weights
 }
 
 /// The same scene, whose pedestrians were seen a while ago: their positions have this deviation (m).
-pub(crate) fn unsure(futures: Futures, deviation: f64) -> Futures {
+pub(crate) fn unsure(futures: &Futures, deviation: f64) -> Futures {
     let n = futures.pedestrians();
     let tracks = (0..n).map(|i| vec![futures.present(i); OBSERVED]).collect();
     let ids = (0..n).map(|i| PedestrianId(i as i64)).collect();
@@ -37,7 +39,9 @@ pub(crate) fn unsure(futures: Futures, deviation: f64) -> Futures {
         deviation,
         ..ObservationQuality::default()
     };
-    let window = Window::new("yard", 0, 10, ids, tracks).unwrap().with_qualities(vec![quality; n]);
+    let window = Window::new("yard", 0, 10, ids, tracks)
+        .unwrap()
+        .with_qualities(vec![quality; n]);
     Futures::new(&window, futures.forecast().clone()).unwrap()
 }
 

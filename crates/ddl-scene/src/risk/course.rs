@@ -53,16 +53,6 @@ pub(super) struct Approach {
     pub(super) scales: [f64; 2],
 }
 
-impl Approach {
-    /// What stays as it is at the begin.
-    pub(super) fn at_begin(&self) -> Self {
-        Self {
-            offsets: [self.offsets[0]; 2],
-            scales: [self.scales[0]; 2],
-        }
-    }
-}
-
 impl Leg {
     /// Of a pedestrian with this path and these scales, at the moment and 12 steps after it.
     #[inline]

@@ -129,11 +129,11 @@ impl Crowd {
         let near = near(&self.rings[pair], &sweep.rings)?;
         let (mut now, mut first) = ([0; HORIZON], 0);
         for (l, leg) in sweep.legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
-            let approach = leg.approach(&self.paths[pair], &self.scales[i]);
+            let Approach { offsets, scales } = leg.approach(&self.paths[pair], &self.scales[i]);
             let reaches = leg.radii.map(|radius| sweep.within + radius);
-            now[leg.step] |= self.close(&approach, reaches);
+            now[leg.step] |= self.close(offsets, scales, reaches);
             if l == 0 && now[0] > 0 {
-                first = self.close(&approach.at_begin(), [reaches[0]; 2]);
+                first = self.close([offsets[0]; 2], [scales[0]; 2], [reaches[0]; 2]);
             }
         }
         let mut so_far = 0;
@@ -147,9 +147,9 @@ impl Crowd {
     }
 
     /// The deviations that come closer during a leg than these distances at its ends, one bit for each.
-    fn close(&self, approach: &Approach, reaches: [f64; 2]) -> u64 {
-        let offsets = approach.offsets.map(|offset| offset.map(|number| number as f32));
-        let way = Way::new(offsets, approach.scales, reaches);
+    fn close(&self, offsets: [Position; 2], scales: [f64; 2], reaches: [f64; 2]) -> u64 {
+        let offsets = offsets.map(|offset| offset.map(|number| number as f32));
+        let way = Way::new(offsets, scales, reaches);
         let nearest = way.nearest() * (1.0 - 4.0 * ROUNDING as f32);
         let reaches = [way.r + way.dr.max(0.0), way.s + way.ds.max(0.0)];
         let mut close = 0;

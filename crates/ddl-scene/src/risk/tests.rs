@@ -158,7 +158,7 @@ proptest! {
     /// Nobody can keep away from a plan to whom it is close already.
     #[test]
     fn who_is_close_now_stays_a_risk((starts, velocities, scales, rows) in scenes(), deviation in 0.0..0.5f64) {
-        let crowd = unsure(futures(&starts, &velocities, &WEIGHTS, &scales), deviation);
+        let crowd = unsure(&futures(&starts, &velocities, &WEIGHTS, &scales), deviation);
         let plan = plan(&rows);
         let [x, y] = plan.at(0.0).position;
         let reach = 0.4 + plan.at(0.0).radius;
