@@ -132,6 +132,11 @@ impl Answer for OccupancyCommand {
         &self.stream
     }
 
+    /// The grids of one moment can fill a large part of the memory.
+    fn at_once(&self) -> usize {
+        1
+    }
+
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         state.is_first_text();
         let times = Occupancy::every(self.every)?;

@@ -212,7 +212,7 @@ impl Stream<'_> {
             let is_full = if self.forecast.latest {
                 self.taken >= MOST_TAKEN && waiting > 0
             } else {
-                waiting >= MOST_WAITING
+                waiting >= MOST_WAITING.min(self.command.at_once())
             };
             let incoming = match waiting {
                 0 => match frames.wait() {

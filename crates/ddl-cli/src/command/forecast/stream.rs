@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 /// Number of lines above which a terminal gets a note.
 const LOOKED_THROUGH: usize = 100;
-/// About so many pedestrians are forecast and written at once: their forecasts take some 30 MB as text.
+/// Forecasts of so many pedestrians take some 30 MB as text.
 const AT_ONCE: usize = 1024;
 /// Bytes above which the output counts as large.
 const LARGE: usize = 50 << 20;
@@ -71,6 +71,11 @@ pub(crate) trait Answer {
     ) -> anyhow::Result<Vec<CertifiedForecast>> {
         let forecasts = model.forecast_scenes(windows.windows, None)?;
         Ok(forecasts.into_iter().map(Into::into).collect())
+    }
+
+    /// About so many pedestrians are forecast and written at once.
+    fn at_once(&self) -> usize {
+        AT_ONCE
     }
 
     /// Adds the answers of the moments to a log.
@@ -147,7 +152,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     state.frame_id = topic.as_ref().and_then(|topic| topic.frame_id.clone());
     let (mut lines, mut bytes) = (0, 0);
     let interrupt = Interrupt::catch()?;
-    let parts = Window::parts(&observed.windows, AT_ONCE).map(|windows| {
+    let parts = Window::parts(&observed.windows, command.at_once()).map(|windows| {
         // No unfinished file is left.
         if interrupt.flow().is_break() {
             bail!(DdlError::Interrupted);
