@@ -4,7 +4,7 @@ use crate::answer::{Answer, Held, Notes};
 use crate::boundary::Failure;
 use crate::layout::ddl_live_options;
 use crate::model::{Model, Request, Threads};
-use ddl::data::{Clock, Completeness, LiveTracks, PedestrianId, Position, TimeUnit};
+use ddl::data::{Clock, LiveTracks, PedestrianId, Position, TimeUnit};
 use ddl::{AdaptiveRegions, Ddl, DdlError, LiveForecast, LiveForecaster, MemoryFile};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -70,7 +70,7 @@ impl Live {
         let held = made.map(|now| Held {
             window: now.window,
             forecast: now.forecast,
-            is_joint: matches!(request, Request::Joint(_)),
+            request: request.clone(),
             threads: Arc::clone(&self.threads),
         });
         if place.live.tracks().is_moment() {
@@ -104,7 +104,6 @@ impl Live {
 }
 
 fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, Failure> {
-    let longest = LiveTracks::LONGEST_GAP;
     let ddl_live_options {
         rate,
         whole,
@@ -112,13 +111,6 @@ fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, Failure> {
         max_age,
         ..
     } = *options;
-    for (name, seconds) in [("max_age", max_age.copied().unwrap_or(0.0)), ("every", every)] {
-        if !(0.0..=longest).contains(&seconds) {
-            return Err(Failure::invalid(format!(
-                "{name} is {seconds}; it must be seconds from 0 to {longest}"
-            )));
-        }
-    }
     if !(rate >= 0.0 && rate.is_finite()) {
         return Err(Failure::invalid(format!(
             "rate is {rate}; it must be frames per second, or 0 for times"
@@ -128,8 +120,8 @@ fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, Failure> {
         0.0 => Clock::with_stamps(TimeUnit::Seconds),
         rate => Clock::with_frame_time(rate.recip()).map_err(Failure::invalid)?,
     };
-    let tracks = LiveTracks::with_clock(clock).with_completeness(Completeness::of(whole));
-    Ok(tracks.with_max_age(max_age.copied()).with_interval(every))
+    let ages = [max_age.copied(), Some(every)];
+    ddl::windows_of(LiveTracks::with_clock(clock), whole, ages, false).map_err(Failure::invalid)
 }
 
 impl Place {
@@ -148,13 +140,10 @@ impl Place {
     /// What there is to say besides the forecast. Once a minute the memory is written.
     fn notes(&mut self) -> Notes<'_> {
         let place = self.live.place();
-        let mut warning = place.and_then(|place| place.refused().map(str::to_owned));
-        if let (Some(file), Some(place)) = (&mut self.file, place)
-            && file.is_due()
-        {
-            // The frame has been observed, so a full disk must not discard its forecast.
-            warning = file.write(place).err().map(|error| error.to_string()).or(warning);
-        }
+        let refused = place.and_then(|place| place.refused().map(str::to_owned));
+        // The frame has been observed, so a full disk must not discard its forecast.
+        let written = MemoryFile::write_if_due(self.file.as_mut(), place);
+        let warning = written.err().map(|error| error.to_string()).or(refused);
         Notes {
             misfits: self.live.tracks().misfits(),
             remembered: place.map_or(0, |place| place.memory().segments()),

@@ -2,7 +2,7 @@
 
 use crate::errors::{ensure, of_any};
 use crate::forecasts::{EmptyFields, parts};
-use crate::observed::Observed;
+use crate::observed::{Observed, past_tracks};
 use ddl::data::{Completeness, Window};
 use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine};
 use ddl::{CertifiedForecast, Forecaster, WeightedGoals};
@@ -22,12 +22,12 @@ pub(crate) fn baseline<'py>(
     seed: u64,
     goals: Option<PyReadonlyArray3<'py, f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scene = Observed::new(&past, asked, Completeness::Partial)?;
+    let scene = Observed::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
     let forecaster: Box<dyn Forecaster + Send + Sync> = match name {
         "constant_velocity" => Box::new(ConstantVelocity::LastStep),
         "mean_velocity" => Box::new(ConstantVelocity::MeanObserved),
         "angular_noise" => Box::new(ConstantVelocity::AngularNoise { seed }),
-        "constant_acceleration" => Box::new(ConstantAcceleration::Bounded),
+        "constant_acceleration" => Box::new(ConstantAcceleration),
         "social_force" => Box::new(SocialForce),
         "straight_line" => Box::new(StraightLine(given(goals.as_ref(), &scene)?)),
         _ => {

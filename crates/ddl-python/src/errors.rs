@@ -1,9 +1,9 @@
 //! Conversion of the crates' errors to Python exceptions.
 
-use pyo3::PyErr;
 use pyo3::exceptions::{
     PyFileNotFoundError, PyIsADirectoryError, PyKeyboardInterrupt, PyOSError, PyPermissionError, PyValueError,
 };
+use pyo3::prelude::*;
 use std::error::Error;
 use std::io::ErrorKind;
 
@@ -49,4 +49,18 @@ fn of_io(kind: ErrorKind, message: String) -> PyErr {
         ErrorKind::IsADirectory => PyIsADirectoryError::new_err(message),
         _ => PyOSError::new_err(message),
     }
+}
+
+/// The value that has this name.
+pub(crate) fn parsed<T: std::str::FromStr<Err: Error + 'static>>(name: &str) -> PyResult<T> {
+    name.parse().map_err(of_any)
+}
+
+/// Checks a distance in metres.
+pub(crate) fn not_negative(name: &str, metres: f64) -> PyResult<()> {
+    ensure!(
+        metres >= 0.0 && metres.is_finite(),
+        "{name} is {metres}; it must be a number of metres, 0 or more"
+    );
+    Ok(())
 }

@@ -1,7 +1,7 @@
 //! The benchmark for custom models: windows without their futures, the forecasts for them, and their scores.
 
 use crate::arrays::{Paths, array, forecast, numbers};
-use crate::errors::{ensure, of_any, raised};
+use crate::errors::{ensure, of_any, parsed, raised};
 use crate::forecasts::names;
 use crate::interruptible::{Stop, User, run, run_on};
 use crate::model::Model;
@@ -19,10 +19,6 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::channel;
-
-fn parsed<T: std::str::FromStr<Err: std::error::Error + 'static>>(word: &str) -> PyResult<T> {
-    word.parse().map_err(of_any)
-}
 
 fn dataset(convention: Convention, folder: Option<PathBuf>) -> Result<Dataset, DdlError> {
     if convention == Convention::Simulated {

@@ -1,12 +1,11 @@
 //! Live forecasts of an observed place.
 
 use crate::arrays::points;
-use crate::errors::{ensure, of_any, raised};
+use crate::errors::{ensure, of_any, parsed, raised};
 use crate::forecasts::named_parts;
 use crate::interruptible::{User, run_on, wait_for};
 use crate::model::Model;
-use crate::moments::{Moments, clock_of_rate, unit_named};
-use crate::observed::WindowOptions;
+use crate::moments::{Moments, clock_of_rate};
 use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, PedestrianNames, Position, TimeUnit, Window};
 use ddl::{AdaptiveRegions, CertifiedForecast, Ddl, DdlError, LiveForecaster, MemoryFile};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
@@ -56,13 +55,9 @@ impl WatchedPlace {
             let now = self.live.push(frame, seen)?;
             now.map(|now| (now.window, now.forecast.into()))
         };
-        let mut unwritten = None;
-        if let (Some(file), Some(place)) = (&mut self.file, self.live.place())
-            && file.is_due()
-        {
-            // The frame has been observed, so a full disk must not discard its forecast.
-            unwritten = file.write(place).err().map(|error| error.to_string());
-        }
+        // The frame has been observed, so a full disk must not discard its forecast.
+        let written = MemoryFile::write_if_due(self.file.as_mut(), self.live.place());
+        let unwritten = written.err().map(|error| error.to_string());
         let tracks = self.live.tracks();
         let misfits = tracks.misfits().iter();
         let misfits = misfits.map(|misfit| {
@@ -141,7 +136,8 @@ impl Live {
             Some(fps) => clock_of_rate(fps)?,
             None => Clock::with_stamps(TimeUnit::Seconds),
         };
-        let tracks = WindowOptions::new(whole, max_age, Some(every))?.of(LiveTracks::with_clock(clock));
+        let tracks = ddl::windows_of(LiveTracks::with_clock(clock), whole, [max_age, Some(every)], false);
+        let tracks = tracks.map_err(PyValueError::new_err)?;
         let live = LiveForecaster::with_tracks(Arc::clone(&model.0), tracks);
         let mut live = live.with_adaptive_regions(AdaptiveRegions::default());
         let mut file = None;
@@ -174,7 +170,7 @@ impl Live {
         words: BTreeMap<i64, String>,
     ) -> PyResult<(Option<Bound<'py, PyDict>>, Vec<(i64, f64, String)>, Option<String>)> {
         let moments = match unit {
-            Some(unit) => Moments::of_times(unit_named(unit)?),
+            Some(unit) => Moments::of_times(parsed(unit)?),
             None => Moments {
                 clock: self.clock,
                 unit: None,

@@ -1,7 +1,7 @@
 //! The metrics of the evaluation, on arrays.
 
 use crate::arrays::{Paths, array, forecast, tracks};
-use crate::errors::{ensure, of_any};
+use crate::errors::{ensure, not_negative, of_any};
 use crate::interruptible::run;
 use ddl::Forecast;
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
@@ -128,6 +128,7 @@ pub(crate) fn collisions(
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let steps = paths.shape()[1];
     ensure!(steps > 0, "paths have no steps");
+    not_negative("radius", radius)?;
     let tracks = tracks("paths", &paths, steps, false)?;
     let slices: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
     let n = slices.len();

@@ -4,15 +4,16 @@ use crate::arrays::{array, numbers};
 use crate::errors::{ensure, of_any, raised};
 use crate::forecasts::{EmptyFields, named_parts, parts};
 use crate::interruptible::{Stop, run};
-use crate::observed::{Observed, WindowOptions, past_tracks};
+use crate::observed::{Observed, past_tracks};
 use crate::recording::{Recording, doubt};
 use crate::scene::plan;
 use ddl::data::{Completeness, PedestrianId, Window};
 use ddl::{
     CertifiedForecast, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource,
-    RecordingPlayer,
+    RecordingPlayer, windows_of,
 };
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -174,9 +175,8 @@ impl Model {
         joint: bool,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
         let options = ForecastOptions::new(&self.0, samples, certificates, joint)?;
-        let mut windows = WindowOptions::new(whole, max_age, every)?;
-        windows.last = last;
-        let observed = recording.observed(py, windows)?;
+        let tracks = windows_of(recording.tracks.live_tracks(), whole, [max_age, every], last);
+        let observed = recording.observed(py, tracks.map_err(PyValueError::new_err)?, last)?;
         let forecasts = self.forecasts(py, options, observed.windows.clone())?;
         let pairs = observed.windows.iter().zip(&forecasts);
         let forecasts = pairs.map(|(window, forecast)| named_parts(py, window, forecast, recording.moments));
@@ -185,7 +185,7 @@ impl Model {
 
     /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
     fn goals(&self, py: Python<'_>, past: PyReadonlyArray3<'_, f64>, asked: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let scene = Observed::new(&past, asked, Completeness::Partial)?;
+        let scene = Observed::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
         let k = self.hypotheses();
         let mut goals = vec![[f64::NAN; 2]; asked * k];
         let mut weights = vec![f64::NAN; asked * k];
@@ -219,7 +219,7 @@ impl Model {
         most: usize,
         joint: bool,
     ) -> PyResult<(String, Option<String>)> {
-        let observed = recording.observed(py, WindowOptions::new(false, None, None)?)?;
+        let observed = recording.observed(py, recording.tracks.live_tracks(), false)?;
         let doubt = doubt(&observed);
         ensure!(
             !observed.windows.is_empty(),

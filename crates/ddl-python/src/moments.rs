@@ -4,7 +4,6 @@ use crate::arrays::array;
 use crate::errors::{ensure, of_any};
 use ddl::data::{Clock, FrameNumber, TimeUnit};
 use numpy::datetime::{Datetime, units::Microseconds};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// From the ticks of windows to the frame numbers or times of the user.
@@ -88,24 +87,3 @@ pub(crate) fn clock_of_rate(fps: f64) -> PyResult<Clock> {
     );
     Clock::with_frame_time(fps.recip()).map_err(of_any)
 }
-
-/// The unit with the name that Python uses.
-pub(crate) fn unit_named(name: &str) -> PyResult<TimeUnit> {
-    UNITS
-        .into_iter()
-        .find_map(|(word, unit)| (word == name).then_some(unit))
-        .ok_or_else(|| PyValueError::new_err(format!("there is no unit {name:?}")))
-}
-
-pub(crate) fn name_of(unit: TimeUnit) -> &'static str {
-    let named = UNITS.into_iter().find(|(_, of)| *of == unit);
-    named.map_or("seconds", |(name, _)| name)
-}
-
-const UNITS: [(&str, TimeUnit); 5] = [
-    ("seconds", TimeUnit::Seconds),
-    ("milliseconds", TimeUnit::Milliseconds),
-    ("microseconds", TimeUnit::Microseconds),
-    ("nanoseconds", TimeUnit::Nanoseconds),
-    ("dates", TimeUnit::Dates),
-];

@@ -1,49 +1,9 @@
 //! What was observed of a scene or recording, as windows to forecast from.
 
 use crate::arrays::tracks;
-use crate::errors::{ensure, of_any};
 use ddl::data::{Completeness, LiveError, LiveTracks, Misfit, OBSERVED, PedestrianId, Position, Window};
 use numpy::PyReadonlyArray3;
 use pyo3::prelude::*;
-
-/// The windows that the user asks for.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct WindowOptions {
-    pub(crate) completeness: Completeness,
-    /// `None` for that which suits the rows of each pedestrian.
-    max_age: Option<f64>,
-    /// `None` for the interval that suits the recording.
-    pub(crate) every: Option<f64>,
-    /// Only the window of the last moment.
-    pub(crate) last: bool,
-}
-
-impl WindowOptions {
-    pub(crate) fn new(whole: bool, max_age: Option<f64>, every: Option<f64>) -> PyResult<Self> {
-        for (name, seconds) in [("max_age", max_age), ("every", every)] {
-            if let Some(seconds) = seconds {
-                ensure!(
-                    (0.0..=LiveTracks::LONGEST_GAP).contains(&seconds),
-                    "{name} must be a number of seconds from 0 to {}; found {seconds}",
-                    LiveTracks::LONGEST_GAP
-                );
-            }
-        }
-        Ok(Self {
-            completeness: Completeness::of(whole),
-            max_age,
-            every,
-            last: false,
-        })
-    }
-
-    pub(crate) fn of(self, tracks: LiveTracks) -> LiveTracks {
-        let tracks = tracks.with_completeness(self.completeness);
-        // With clocks of their own, too, the last row is the last moment.
-        let every = self.every.or(self.last.then_some(0.0));
-        tracks.with_max_age(self.max_age).with_interval(every)
-    }
-}
 
 /// The pedestrians of a scene that can be forecast, and their positions in the user's array.
 #[derive(Debug, Clone)]
@@ -57,13 +17,8 @@ pub(crate) struct Observed {
 }
 
 impl Observed {
-    /// The observation of `(n, 8, 2)` positions. The first `asked` pedestrians are forecast; the others are their
-    /// neighbours.
-    pub(crate) fn new(past: &PyReadonlyArray3<'_, f64>, asked: usize, completeness: Completeness) -> PyResult<Self> {
-        Self::of_tracks(&past_tracks(past)?, asked, completeness).map_err(of_any)
-    }
-
-    /// As [`Observed::new`], of positions with NaN where a pedestrian was not observed.
+    /// The observation of 8 positions each, NaN where a pedestrian was not observed. The first `asked` pedestrians are
+    /// forecast; the others are their neighbours.
     pub(crate) fn of_tracks(
         tracks: &[Vec<Position>],
         asked: usize,

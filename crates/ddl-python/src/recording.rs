@@ -1,13 +1,12 @@
 //! Recordings: tracks of one place, from files or columns.
 
 use crate::arrays::array;
-use crate::errors::{ensure, of_any, raised};
+use crate::errors::{ensure, of_any, parsed, raised};
 use crate::interruptible::run;
-use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
-use crate::observed::WindowOptions;
+use crate::moments::{Moments, clock_of_rate};
 use ddl::data::{
-    ColumnChoice, FRAME_LIMIT, Format, Homography, Observation, PedestrianId, PedestrianName, Recording as Tracks,
-    RecordingError, parse_columns, write_recording,
+    ColumnChoice, FRAME_LIMIT, Format, Homography, LiveError, LiveTracks, Observation, PedestrianId, PedestrianName,
+    Recording as Tracks, RecordingError, TimeUnit, parse_columns, write_recording,
 };
 use ddl::{ObservedTracks, TimedRecording, TrackUnits};
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
@@ -81,12 +80,9 @@ impl Recording {
     }
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast.
-    pub(crate) fn observed(&self, py: Python<'_>, options: WindowOptions) -> PyResult<ObservedTracks> {
-        let (tracks, clock) = (Arc::clone(&self.tracks), self.moments.clock);
-        run(py, move |_| {
-            let live = options.of(tracks.live_tracks());
-            ObservedTracks::new((tracks, clock), live, options.last)
-        })
+    pub(crate) fn observed(&self, py: Python<'_>, live: LiveTracks, last: bool) -> PyResult<ObservedTracks> {
+        let recording = (Arc::clone(&self.tracks), self.moments.clock);
+        run(py, move |_| ObservedTracks::new(recording, live, last))
     }
 }
 
@@ -105,7 +101,7 @@ impl Recording {
         frame_step: Option<i64>,
         name: &str,
     ) -> PyResult<Self> {
-        let unit = unit.map(unit_named).transpose()?;
+        let unit = unit.map(parsed).transpose()?;
         let lengths = [frame.len(), id.len(), x.len(), y.len()];
         ensure!(
             lengths.iter().all(|length| *length == lengths[0]),
@@ -128,7 +124,7 @@ impl Recording {
         }
         let made = Tracks::in_usual_step(name, observations);
         let mut tracks = made.map_err(|error| match error {
-            RecordingError::Duplicate { pedestrian, frame } => {
+            RecordingError::Row(LiveError::Duplicate { pedestrian, frame }) => {
                 let word = words
                     .as_ref()
                     .and_then(|words| words.get((pedestrian.0 - FRAME_LIMIT) as usize));
@@ -165,7 +161,7 @@ impl Recording {
             raised(ddl::DdlError::Io { path, source })
         })?;
         let format = match format {
-            Some(name) => format_named(name)?,
+            Some(name) => parsed(name)?,
             None => Format::guess(&path, &bytes, &choice).map_err(of_any)?,
         };
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
@@ -180,7 +176,7 @@ impl Recording {
 
     #[pyo3(signature = (path, *, format = "table"))]
     fn write(&self, path: PathBuf, format: &str) -> PyResult<()> {
-        let bytes = write_recording(&self.rows, format_named(format)?).map_err(raised)?;
+        let bytes = write_recording(&self.rows, parsed(format)?).map_err(raised)?;
         ddl::write_atomically(&path, &bytes).map_err(raised)
     }
 
@@ -208,7 +204,7 @@ impl Recording {
     /// What its times count; `None` for frame numbers.
     #[getter]
     fn unit(&self) -> Option<&'static str> {
-        self.moments.unit.map(name_of)
+        self.moments.unit.map(TimeUnit::name)
     }
 
     fn __len__(&self) -> usize {
@@ -259,14 +255,4 @@ impl Recording {
         let warning = self.tracks.speed_warning()?;
         Some(ddl::in_frames(self.moments.clock, warning).to_string())
     }
-}
-
-pub(crate) fn format_named(name: &str) -> PyResult<Format> {
-    let format = Format::ALL.into_iter().find(|format| format.name() == name);
-    format.ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "format must be one of {}; found {name:?}",
-            Format::ALL.map(Format::name).join(", ")
-        ))
-    })
 }

@@ -1,7 +1,7 @@
 //! Plans, their risk, and occupancy, from the arrays of joint futures.
 
 use crate::arrays::{Paths, array, flat, forecast, tracks};
-use crate::errors::{ensure, of_any};
+use crate::errors::{ensure, not_negative, of_any};
 use crate::interruptible::run;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, TIME_STEP, Window};
 use ddl::scene::{Area, Futures, Occupancy, Plan, PlanPoint};
@@ -61,7 +61,8 @@ fn futures((past, deviations, paths, weights, spread): &JointArrays<'_>) -> PyRe
 
 /// Checks the plans of a forecast that holds no pedestrian, whose risk is 0 without a computation.
 #[pyfunction]
-pub(crate) fn check_plans(plans: Vec<PyReadonlyArray2<'_, f64>>) -> PyResult<()> {
+pub(crate) fn check_plans(plans: Vec<PyReadonlyArray2<'_, f64>>, within: f64) -> PyResult<()> {
+    not_negative("within", within)?;
     plans.iter().try_for_each(|rows| plan(rows).map(drop))
 }
 
@@ -135,6 +136,7 @@ pub(crate) fn occupancy<'py>(
             return Err(PyValueError::new_err("no pedestrian could be forecast: give area="));
         }
     };
+    not_negative("radius", radius)?;
     let area = area.map_err(of_any)?;
     let times = Occupancy::every(every).map_err(of_any)?;
     area.ensure_kept(times.len()).map_err(of_any)?;

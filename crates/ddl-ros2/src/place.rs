@@ -125,12 +125,7 @@ impl Place {
 
     /// Writes the memory, if a minute has passed.
     pub(crate) fn save(&mut self) -> anyhow::Result<()> {
-        if let (Some(file), Some(place)) = (&mut self.file, self.scenes.place(None))
-            && file.is_due()
-        {
-            file.write(place)?;
-        }
-        Ok(())
+        Ok(MemoryFile::write_if_due(self.file.as_mut(), self.scenes.place(None))?)
     }
 
     /// Writes the memory for the last time.

@@ -2,7 +2,7 @@
 
 use crate::exchange::Failure;
 use ddl::TrackUnits;
-use ddl::data::{ColumnChoice, Completeness, Homography, LiveTracks};
+use ddl::data::{ColumnChoice, Homography, LiveTracks};
 use serde::Deserialize;
 
 /// `Options` of `types.d.ts`.
@@ -49,15 +49,8 @@ impl Options {
 
     /// These tracks with the windows that are asked for.
     pub(crate) fn windows_of(&self, tracks: LiveTracks) -> Result<LiveTracks, Failure> {
-        for (name, seconds) in [("maxAge", self.max_age), ("every", self.every)] {
-            if seconds.is_some_and(|seconds| !(0.0..=LiveTracks::LONGEST_GAP).contains(&seconds)) {
-                let longest = LiveTracks::LONGEST_GAP;
-                return Err(format!("{name} must be a number of seconds from 0 to {longest}").into());
-            }
-        }
-        let every = self.every.or(self.last.then_some(0.0));
-        let tracks = tracks.with_completeness(Completeness::of(self.whole));
-        Ok(tracks.with_max_age(self.max_age).with_interval(every))
+        let windows = ddl::windows_of(tracks, self.whole, [self.max_age, self.every], self.last);
+        Ok(windows.map_err(|problem| problem.replace("max_age", "maxAge"))?)
     }
 
     /// Whether every moment is to be forecast, as the file has them.

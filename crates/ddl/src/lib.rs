@@ -81,6 +81,7 @@ pub use tracks::observed::{
 };
 pub use tracks::timed::TimedRecording;
 pub use tracks::unfamiliar::UnfamiliarMotions;
+pub use tracks::windows::windows_of;
 pub use trust::calibration::region_table;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 

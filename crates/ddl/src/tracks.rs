@@ -5,3 +5,4 @@ pub(crate) mod moment;
 pub(crate) mod observed;
 pub(crate) mod timed;
 pub(crate) mod unfamiliar;
+pub(crate) mod windows;

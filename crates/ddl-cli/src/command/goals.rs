@@ -3,7 +3,7 @@
 use crate::command::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::output::write_output;
 use crate::units::Units;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use ddl::{GoalEvaluation, Remembering, Split};
 use std::path::PathBuf;
 
@@ -18,12 +18,14 @@ pub(crate) struct Goals {
     model: ModelChoice,
     #[command(flatten)]
     units: Units,
-    /// Where: in the scene that the model was trained without, or in your own recordings (--data)
-    #[arg(long, value_enum)]
-    measure: Measure,
-    /// Memory of the place to use
-    #[arg(long, value_enum)]
-    memory: Option<MemoryOption>,
+    /// Where: test (the scene that the model was trained without, or your own recordings, --data) or validation (the
+    /// validation part)
+    #[arg(long)]
+    measure: Split,
+    /// Memory of the place to use: place (training recordings of the same place, whether confirmed to help or not) or
+    /// online (the recording before the last observed frame, as in the protocol `online`)
+    #[arg(long)]
+    memory: Option<Remembering>,
     /// Recordings to evaluate on: the folder of the model's convention, or your own folder or file [default:
     /// `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
@@ -35,22 +37,6 @@ pub(crate) struct Goals {
     output: Option<PathBuf>,
     #[command(flatten)]
     machine: Machine,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Measure {
-    /// The scene left out of training
-    Test,
-    /// The validation part
-    Validation,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum MemoryOption {
-    /// Training recordings of the same place, whether confirmed to help or not
-    Place,
-    /// The recording before the last observed frame, as in the protocol `online`
-    Online,
 }
 
 impl Goals {
@@ -65,15 +51,7 @@ impl Goals {
         let convention = convention_of(data, model.config().data.convention);
         let units = self.units.or_those_of(model.config());
         let dataset = dataset(convention, data, &units)?;
-        let on = match self.measure {
-            Measure::Test => Split::Test,
-            Measure::Validation => Split::Validation,
-        };
-        let memory = self.memory.map(|memory| match memory {
-            MemoryOption::Place => Remembering::Place,
-            MemoryOption::Online => Remembering::Online,
-        });
-        let evaluation = ddl::evaluate_goals(&model, &dataset, on, memory)?;
+        let evaluation = ddl::evaluate_goals(&model, &dataset, self.measure, self.memory)?;
         Ok(if self.telling.json {
             serde_json::to_string_pretty(&evaluation)? + "\n"
         } else {

@@ -5,17 +5,9 @@ use ddl_data::Window;
 
 const PEDESTRIANS: usize = 128;
 
-/// Consecutive windows of at least 128 pedestrians in all, except the last part.
+/// Consecutive windows of about 128 pedestrians in all.
 pub(crate) fn parts(windows: &[Window]) -> impl Iterator<Item = &[Window]> {
-    let mut pedestrians = 0;
-    windows.chunk_by(move |window, _| {
-        pedestrians += window.len();
-        let whole = pedestrians >= PEDESTRIANS;
-        if whole {
-            pedestrians = 0;
-        }
-        !whole
-    })
+    Window::parts(windows, PEDESTRIANS)
 }
 
 pub(crate) fn pedestrians(windows: &[Window]) -> usize {

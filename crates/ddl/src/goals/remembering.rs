@@ -15,6 +15,8 @@ pub enum Remembering {
     Online,
 }
 
+ddl_core::named!(Remembering, "memory", Place => "place", Online => "online");
+
 /// Adds to each pedestrian of the windows at most `count` earlier pedestrians. They come from the recordings that
 /// `of_place` gives for the name of the window's recording and, with a playback, from the window's own recording before
 /// its last observed frame.

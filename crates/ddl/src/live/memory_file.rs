@@ -72,6 +72,17 @@ impl MemoryFile {
         Ok(())
     }
 
+    /// Writes the memory if a minute has passed. `None`: there is no file, or no memory.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_if_due(file: Option<&mut Self>, place: Option<&PlaceMemory>) -> Result<(), DdlError> {
+        match file.filter(|file| file.is_due()).zip(place) {
+            Some((file, place)) => file.write(place),
+            None => Ok(()),
+        }
+    }
+
     /// Ends the test of the memory at the end of a session, and writes it. Returns the reason if the file is left
     /// unchanged.
     ///

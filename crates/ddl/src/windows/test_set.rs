@@ -28,6 +28,8 @@ pub enum Split {
     Validation,
 }
 
+ddl_core::named!(Split, "part", Test => "test", Validation => "validation");
+
 /// Test windows with the rules they belong to. A window under both rules is forecast once.
 #[derive(Debug)]
 pub(crate) struct TestSet {
