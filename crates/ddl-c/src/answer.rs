@@ -2,7 +2,7 @@
 
 use crate::boundary::{Failure, c_text};
 use crate::layout::{ddl_cells, ddl_misfit, ddl_occupancy, ddl_point, ddl_risks, ddl_view};
-use crate::model::Threads;
+use crate::model::{Request, Threads};
 use ddl::Forecast;
 use ddl::data::{HORIZON, Misfit, OBSERVED, ObservationQuality, Window};
 use ddl::scene::{Area, Futures, Occupancy, Plan};
@@ -31,7 +31,8 @@ pub(crate) struct Answer {
 pub(crate) struct Held {
     pub(crate) window: Window,
     pub(crate) forecast: Forecast,
-    pub(crate) is_joint: bool,
+    /// What it was asked for.
+    pub(crate) request: Request,
     pub(crate) threads: Arc<Threads>,
 }
 
@@ -161,6 +162,10 @@ impl Answer {
         seen: bool,
     ) -> Result<(), Failure> {
         let (held, futures) = self.joint()?;
+        if seen && matches!(held.request, Request::Joint(Some(_))) {
+            let words = "the people of this forecast already keep away from the plan it was given: set unseen";
+            return Err(Failure::invalid(words));
+        }
         let index = |id| {
             let index = held.window.pedestrians().iter().position(|known| known.0 == id);
             index.ok_or_else(|| Failure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
@@ -228,7 +233,10 @@ impl Answer {
     }
 
     fn joint(&self) -> Result<(&Held, Futures), Failure> {
-        let held = self.held.as_ref().filter(|held| held.is_joint);
+        let held = self
+            .held
+            .as_ref()
+            .filter(|held| matches!(held.request, Request::Joint(_)));
         let words = "risk and occupancy need a forecast of somebody, with joint set in its request";
         let held = held.ok_or_else(|| Failure::invalid(words))?;
         let futures = Futures::new(&held.window, held.forecast.clone()).map_err(Failure::invalid)?;

@@ -15,7 +15,7 @@ pub(crate) struct Model {
 }
 
 /// What to forecast.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) enum Request {
     Hypotheses,
     Joint(Option<GivenPlan>),
@@ -43,7 +43,7 @@ impl Model {
         Ok(Held {
             forecast: self.threads.run(forecast)?,
             window,
-            is_joint: matches!(request, Request::Joint(_)),
+            request: request.clone(),
             threads: Arc::clone(&self.threads),
         })
     }

@@ -121,7 +121,8 @@ void scenes_answer_plans(const ddl::Model& model) {
     ddl::Forecast given;
     ddl::forecast(model, meeting(), given, ddl::joint({{0.0, {3.5, 0.0}, 0.2}, {4.8, {3.5, 4.8}, 0.2}}, 0));
     for (std::size_t k = 0; k < 20; ++k) REQUIRE(std::abs(given.path(0, k)[11].y - 4.8) < 1e-9);
-    REQUIRE(has(error_of([&] { given.risks({between}, 0.5, 77); }), "ego is 77"));
+    REQUIRE(has(error_of([&] { given.risks({between}, 0.5, 77); }), "already keep away from the plan"));
+    REQUIRE(has(error_of([&] { given.risks({between}, 0.5, 77, true); }), "ego is 77"));
 }
 
 void wrong_input_is_told(const ddl::Model& model) {

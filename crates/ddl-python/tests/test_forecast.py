@@ -338,6 +338,14 @@ def test_joint_futures_and_their_answers(forecaster, crossing):
     assert len(grid.message(0)["data"]) == grid.probabilities[0].size
     given = forecaster.forecast(scene, joint=True, plan=plan, ego=5)
     assert np.allclose(given.futures[:, 5], plan[:, 1:])
+    with pytest.raises(ValueError, match="already keep away"):
+        given.risk([plan])
+    assert given.risk([plan], seen=False).total.shape == (1,)
+    scene = scene.copy()
+    scene[1, :7] = np.nan
+    with pytest.warns(ddl.DoubtWarning, match="1 pedestrians could not be forecast"):
+        seen_once = forecaster.forecast(scene, joint=True).risk([plan])
+    assert np.isnan(seen_once.pedestrians[0]).tolist() == [False, True] + 4 * [False]
     with pytest.raises(ValueError, match="joint=True"):
         forecaster.forecast(scene).futures  # noqa: B018
     with pytest.raises(ValueError, match="sort the rows"):

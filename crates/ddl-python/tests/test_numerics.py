@@ -44,6 +44,8 @@ def test_soft_dtw_takes_any_array():
     with pytest.raises(ValueError, match="x has masked values"):
         soft_dtw.value(np.ma.masked_greater(x, 0), y)
     with pytest.raises(ValueError, match="P has masked values"):
+        dynamics.Flow((0, 0), [np.ma.masked_equal(row, 0) for row in np.eye(2)])
+    with pytest.raises(ValueError, match="P has masked values"):
         dynamics.Flow((0, 0), np.ma.masked_equal(np.eye(2), 0))
     assert soft_dtw.value(x, x, normalised=True) == pytest.approx(0, abs=1e-12)
     for wrong in (np.empty((0, 2)), np.full((3, 2), np.nan), np.zeros((2, 3)), np.zeros((2, 2, 2)), "text"):
@@ -117,6 +119,11 @@ def test_metrics_are_their_definitions():
     density = [[scipy.gaussian_kde(paths[i, :, t].T).logpdf(truth[i, t])[0] for t in range(12)] for i in range(6)]
     assert np.allclose(metrics.kde_nll(paths, truth), -np.maximum(density, -20).mean(1), rtol=1e-6)
     assert (metrics.amd(paths, truth) > 0).all() and metrics.amv(paths) > 0
+    for wrong in (np.nan, -1):
+        with pytest.raises(ValueError, match="0 or more"):
+            metrics.collides(np.zeros((2, 12, 2)), radius=wrong)
+        with pytest.raises(ValueError, match="0 or more"):
+            metrics.miss(np.zeros((1, 1, 12, 2)), np.zeros((1, 12, 2)), distance=wrong)
     assert metrics.collides(np.array([[[0.0, 0], [2, 0]], [[2.0, 0], [0, 0]], [[9.0, 9], [9, 9]]])).tolist() == [
         True,
         True,

@@ -53,6 +53,8 @@ def plan_rows(plan: ArrayLike) -> Floats:
 def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
     """Ids as whole numbers, and the words from ``LARGEST`` on; None if the ids are whole numbers already."""
     array = column(ids, "id")
+    if array.dtype.kind == "O" and all(type(one) is int or isinstance(one, np.integer) for one in array):
+        array = array.astype(np.int64) if all(abs(one) < LARGEST for one in array) else array
     if array.dtype.kind in "iuf":
         return whole(array, "id"), None
     words = []
@@ -125,6 +127,7 @@ def column(values: ArrayLike, name: str) -> NDArray[Any]:
 
 
 def unmasked(values: ArrayLike, name: str) -> None:
-    """Refuse masked values, because their masks would be ignored."""
-    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+    """Refuse masked values, also in a list, because their masks would be ignored."""
+    parts = values if isinstance(values, (list, tuple)) else [values]
+    if any(isinstance(part, np.ma.MaskedArray) and np.ma.is_masked(part) for part in parts):
         raise ValueError(f"{name} has masked values: leave out these rows, or fill past with NaN")

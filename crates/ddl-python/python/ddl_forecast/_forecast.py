@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -41,7 +42,7 @@ class Risk:
 
     #: (p,) probability that somebody comes close.
     total: Floats
-    #: (p, n) that each pedestrian does.
+    #: (p, n) that each pedestrian does; NaN for those who could not be forecast.
     pedestrians: Floats
     #: (p, 12) that somebody is close during each step of 0.4 s.
     steps: Floats
@@ -107,7 +108,7 @@ class Forecast:
     age : (n,)
         Time since the last row, seconds.
     deviation : (n,)
-        Standard deviation of the last position, metres; 0 with a row there.
+        Estimated standard deviation of the last position, metres; 0 with a row there. Too small after missing rows.
     uncertainty : (n,)
         Standard deviation that the observation adds at the end of the forecast, metres; 0 with a row at every step.
     certificates : Certificates or None
@@ -137,9 +138,12 @@ class Forecast:
     recording: str = ""
     joint: bool = False
     _region_table: str | None = field(default=None, repr=False)
+    _is_given: bool = field(default=False, repr=False)
 
     @classmethod
-    def _of(cls, parts: dict[str, Any], ids: Sequence[Hashable] | None = None, *, joint: bool = False) -> Forecast:
+    def _of(
+        cls, parts: dict[str, Any], ids: Sequence[Hashable] | None = None, *, joint: bool = False, given: bool = False
+    ) -> Forecast:
         evidence = parts.pop("certificates")
         table = parts.pop("region_table")
         frames = parts.pop("frames", None)
@@ -154,6 +158,7 @@ class Forecast:
             frames=frames,
             joint=joint,
             _region_table=table,
+            _is_given=given,
         )
 
     def __len__(self) -> int:
@@ -209,9 +214,20 @@ class Forecast:
         ego
             Id of the pedestrian who follows the plans, and is no risk to itself; None: none of them.
         seen
-            Whether people see who follows the plan, and keep away as from a pedestrian.
+            Whether people see who follows the plan, and keep away as from a pedestrian. Those of a forecast with a plan
+            keep away from it already: give False.
+
+        Warns
+        -----
+        DoubtWarning
+            Pedestrians are seen now who could not be forecast: they do not count, and are NaN.
         """
         joint, rows = self._arrays()
+        if seen and self._is_given:
+            raise ValueError("the people of this forecast already keep away from the plan it was given: give seen=False")
+        here = int(np.isfinite(self.past[~rows, -1]).all(axis=1).sum())
+        if here > 0:
+            warnings.warn(f"{here} pedestrians could not be forecast and do not count", DoubtWarning, stacklevel=2)
         row = None
         if ego is not None:
             found = np.flatnonzero(self.ids[rows] == ego)
@@ -220,11 +236,11 @@ class Forecast:
             row = int(found[0])
         if not rows.any():
             given = _plans(plans)
-            _core.check_plans(given)
-            count = len(given)
-            return Risk(np.zeros(count), np.zeros((count, len(self))), np.zeros((count, 12)), np.zeros((count, 12)))
+            _core.check_plans(given, within)
+            count, nobody = len(given), np.full((len(given), len(self)), np.nan)
+            return Risk(np.zeros(count), nobody, np.zeros((count, 12)), np.zeros((count, 12)))
         total, people, steps, until = _core.risks(joint, _plans(plans), within, row, seen)
-        of_each = np.zeros((len(total), len(self)))
+        of_each = np.full((len(total), len(self)), np.nan)
         of_each[:, rows] = people
         return Risk(total, of_each, steps, until)
 
@@ -236,7 +252,7 @@ class Forecast:
         joint, rows = self._arrays()
         if not rows.any():
             given = _plans(plans)
-            _core.check_plans(given)
+            _core.check_plans(given, 0.0)
             count = len(given)
             return np.full(count, np.inf), np.full((count, len(self)), np.nan)
         nearest, people = _core.clearances(joint, _plans(plans))

@@ -162,7 +162,7 @@ class Forecaster:
                 raise ValueError(f"ego is row {ego}, which past does not have or does not observe now")
         given = None if plan is None else (plan_rows(plan), ego)
         made, doubt = self._core.forecast(arrays, asked, samples, whole, certificates, joint, given)
-        return _told([Forecast._of(parts, joint=joint) for parts in made], doubt)
+        return _told([Forecast._of(parts, joint=joint, given=given is not None) for parts in made], doubt)
 
     def forecast_recording(
         self,

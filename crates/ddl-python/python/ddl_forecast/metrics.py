@@ -88,6 +88,8 @@ def joint_fde(paths: ArrayLike, truth: ArrayLike) -> float:
 
 def miss(paths: ArrayLike, truth: ArrayLike, *, distance: float = 2.0) -> Flags:
     """(n,) whether every hypothesis ends further than ``distance`` metres from the truth; the mean is the miss rate."""
+    if not distance >= 0:
+        raise ValueError(f"distance is {distance}; it must be a number of metres, 0 or more")
     missed: Flags = min_fde(paths, truth) > distance
     return missed
 

@@ -27,7 +27,9 @@ __all__ = ["SearchIndex", "value", "value_and_gradient"]
 
 
 class SearchIndex:
-    """An index of candidates for repeated searches.
+    """An index of candidates for repeated searches, by the normalised distance.
+
+    It is ``value(x, y) - (value(x, x) + value(y, y)) / 2``: 0 for equal sequences.
 
     Parameters
     ----------
