@@ -16,8 +16,8 @@ use crate::window::Window;
 ///
 /// The regions of a forecast `t` steps ahead are compared with the positions observed `t` steps later. The result
 /// changes all later regions. Pedestrians outside the window of that frame are skipped, as are tracks that began after
-/// the forecast: another person has taken the id. The result does not depend on the order of the pedestrians, or on later
-/// frames.
+/// the forecast: another person has taken the id. The result does not depend on the order of the pedestrians, or on
+/// later frames.
 ///
 /// It begins with the table of the first forecast that has one. Forecasts without regions are unchanged.
 ///

@@ -48,8 +48,8 @@ impl Place {
             _ => ([third - left, fourth - top], [0.5 * (left + third), fourth]),
         };
         if let Some(side) = size.iter().position(|&side| side < 0.0) {
-            let problem = "the box ends before it begins; if these are other columns, --columns left=NAME,width=NAME,... \
-                           tells which are which";
+            let problem = "the box ends before it begins; if these are other columns, say which are which (--columns \
+                           left=NAME,width=NAME,...)";
             return Err(FilePlace::field(line, columns[2 + side] + 1).wrong(problem));
         }
         Ok(position)

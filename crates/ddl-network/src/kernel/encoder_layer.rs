@@ -68,8 +68,8 @@ impl EncoderKernel {
     }
 
     /// The layer with temporal attention: the newest token attends to the cached tokens and to itself.
-    /// `x` `[rows, width]`; tokens in `cache` have as many rows, or a divisor, as in `AttentionKernel::temporal_forward`
-    /// -> y `[rows, width]`. Without `keep`, the results serve no backward pass.
+    /// `x` `[rows, width]`; tokens in `cache` have as many rows, or a divisor, as for
+    /// `AttentionKernel::temporal_forward` -> y `[rows, width]`. Without `keep`, the results serve no backward pass.
     pub(crate) fn temporal_attention(
         &self,
         x: &[f32],

@@ -32,8 +32,8 @@ pub(crate) struct Attended {
 }
 
 impl AttentionKernel {
-    /// Mixes the values of the visible pedestrians. For each head, `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width)
-    /// v_j` over the j that are visible to i. `d_ij` is the factor of [`Dropout`], or 1 without it.
+    /// Mixes the values of the visible pedestrians. For each head, `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head
+    /// width) v_j` over the j that are visible to i. `d_ij` is the factor of [`Dropout`], or 1 without it.
     ///
     /// `inputs`: queries, keys and values, `[B, P, heads, head width]` each, with all pedestrians P of the scenes; 1 or
     /// B `frames`.
