@@ -224,7 +224,9 @@ class Forecast:
         """
         joint, rows = self._arrays()
         if seen and self._is_given:
-            raise ValueError("the people of this forecast already keep away from the plan it was given: give seen=False")
+            raise ValueError(
+                "the people of this forecast already keep away from the plan it was given: give seen=False"
+            )
         here = int(np.isfinite(self.past[~rows, -1]).all(axis=1).sum())
         if here > 0:
             warnings.warn(f"{here} pedestrians could not be forecast and do not count", DoubtWarning, stacklevel=2)
