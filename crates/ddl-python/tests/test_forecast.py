@@ -343,7 +343,7 @@ def test_joint_futures_and_their_answers(forecaster, crossing):
     assert given.risk([plan], seen=False).total.shape == (1,)
     scene = scene.copy()
     scene[1, :7] = np.nan
-    with pytest.warns(ddl.DoubtWarning, match="1 pedestrians could not be forecast"):
+    with pytest.warns(ddl.DoubtWarning, match="do not count: 1"):
         seen_once = forecaster.forecast(scene, joint=True).risk([plan])
     assert np.isnan(seen_once.pedestrians[0]).tolist() == [False, True] + 4 * [False]
     with pytest.raises(ValueError, match="joint=True"):

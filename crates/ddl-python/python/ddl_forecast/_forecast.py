@@ -229,7 +229,7 @@ class Forecast:
             )
         here = int(np.isfinite(self.past[~rows, -1]).all(axis=1).sum())
         if here > 0:
-            warnings.warn(f"{here} pedestrians could not be forecast and do not count", DoubtWarning, stacklevel=2)
+            warnings.warn(f"pedestrians who could not be forecast and do not count: {here}", DoubtWarning, stacklevel=2)
         row = None
         if ego is not None:
             found = np.flatnonzero(self.ids[rows] == ego)
