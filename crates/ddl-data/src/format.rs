@@ -8,7 +8,6 @@ mod column_names;
 mod comments;
 mod edinburgh;
 mod field;
-mod frames_beside;
 mod header;
 mod kind;
 mod layouts;

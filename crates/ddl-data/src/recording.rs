@@ -17,8 +17,9 @@ const FASTEST: f64 = 1e-3;
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
-/// Invariants: at least one observation, every position finite and within [`COORDINATE_LIMIT`], at most one observation
-/// per pedestrian and frame, a positive frame step.
+/// Invariants: at least one observation, every position finite and within
+/// [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT), at most one observation per pedestrian and frame, a positive frame
+/// step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     name: Arc<str>,

@@ -125,6 +125,11 @@ impl LengthUnit {
 }
 
 impl Role {
+    /// Whether several columns may have the role; one of them is read.
+    pub(super) fn may_repeat(self) -> bool {
+        matches!(self, Self::Class | Self::Valid)
+    }
+
     /// Whether a column of this role takes the place of one of the other.
     pub(super) fn stands_for(self, other: Self) -> bool {
         let is_time = |role: Self| matches!(role, Self::Frame | Self::Time);
@@ -217,6 +222,15 @@ pub(super) fn rest_beside(names: &[String], seconds: usize) -> Option<Rest> {
         let (unit, a_second) = unit_of(&RESTS, name.strip_prefix(stem)?)?;
         Some((index, unit, a_second))
     })
+}
+
+/// Whether these are 0, 1, 2, ..., as in the first line of a table whose columns have no names.
+pub(super) fn count_columns<'a>(names: impl Iterator<Item = &'a str>) -> bool {
+    let names: Vec<&str> = names.skip_while(|name| name.is_empty()).collect();
+    names.len() > 2
+        && (0..)
+            .zip(&names)
+            .all(|(index, name): (usize, _)| **name == index.to_string())
 }
 
 /// Whether the last word of a name is a unit of time.

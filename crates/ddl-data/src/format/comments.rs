@@ -2,6 +2,7 @@
 
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::is_known;
+use crate::format::header::Header;
 use crate::format::separator::Separator;
 
 /// Begin a line that holds no observation.
@@ -48,18 +49,30 @@ fn rate(word: &str) -> Option<f64> {
     (rate.is_finite() && rate > 0.0).then_some(rate)
 }
 
-/// The names of `count` columns in a comment, as numpy writes them: at least three of them are known. If all are, their
-/// number may be another one, which the reader of the rows refuses.
-pub(super) fn names_in_comment(comment: &str, count: usize, choice: &ColumnChoice) -> Option<Vec<String>> {
+/// The names of `count` columns in a comment, as numpy writes them: at least three of them are known. Without such a
+/// comment fewer names that make a whole header, which the reader of the rows refuses.
+pub(super) fn names_in_comments<'a>(
+    comments: impl Iterator<Item = &'a str>,
+    count: usize,
+    choice: &ColumnChoice,
+) -> Option<Vec<String>> {
+    let names: Vec<Vec<String>> = comments.filter_map(|comment| names_in(comment, choice)).collect();
+    let is_header = |names: &&Vec<String>| {
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        names.len() < count && Header::of(&names, choice).is_ok()
+    };
+    let exact = names.iter().rev().find(|names| names.len() == count);
+    exact.or_else(|| names.iter().rev().find(is_header)).cloned()
+}
+
+fn names_in(comment: &str, choice: &ColumnChoice) -> Option<Vec<String>> {
     let text = comment.trim_start().trim_start_matches(COMMENTS).trim();
     let text = text.rsplit_once(':').map_or(text, |(_, names)| names.trim());
     let names = Separator::of(text).fields(text, 1).ok()?;
     let names: Vec<String> = names.into_iter().map(std::borrow::Cow::into_owned).collect();
     let is_known =
         |name: &&String| is_known(name) || choice.roles.iter().any(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
-    let known = names.iter().filter(is_known).count();
-    let is_other = known > KNOWN_NAMES && known == names.len();
-    (known >= KNOWN_NAMES && (names.len() == count || is_other)).then_some(names)
+    (names.iter().filter(is_known).count() >= KNOWN_NAMES).then_some(names)
 }
 
 #[cfg(test)]

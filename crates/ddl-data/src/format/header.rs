@@ -5,13 +5,11 @@ use std::borrow::Cow;
 use crate::clock::TimeUnit;
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{
-    LengthUnit, Named, Rest, Role, chosen_as, is_known, is_one_of, named, rest_beside, words,
+    LengthUnit, Named, Rest, Role, chosen_as, count_columns, is_known, is_one_of, named, rest_beside, words,
 };
 use crate::format::field::quoted;
-use crate::format::frames_beside::FramesBeside;
 use crate::format::layouts::Layout;
 use crate::format::position_columns::Place;
-use crate::format::recognise::count_columns;
 
 /// Names of columns that tell the recordings of one file apart.
 const GROUPS: &str = "recording recordingid video videoid videoname clip clipid sequenceid sequencename session \
@@ -57,10 +55,8 @@ pub(super) struct Header {
     /// The column of classes (`None` in a layout, which names its own), and the one by which the user keeps rows.
     pub(super) class: Option<usize>,
     pub(super) keep: Option<usize>,
-    /// The column that marks rows, and the mark of those that are left out.
-    pub(super) mark: Option<(usize, bool)>,
-    /// Frames beside the times.
-    pub(super) frames_beside: Option<FramesBeside>,
+    /// The columns that mark rows, each with the mark of those that are left out.
+    pub(super) marks: Vec<(usize, bool)>,
     /// Columns whose value must stay the same: others belong to other recordings.
     pub(super) groups: Vec<usize>,
     /// Further columns.
@@ -87,7 +83,9 @@ impl Header {
         if 2 * numbers.count() > names.len() && !names.iter().any(|name| is_known(name)) {
             let count = names.len();
             let detail = if count_columns(names.iter().copied()) {
-                format!("found 0, 1, 2, ...; if they count the columns, write the {count} names instead")
+                format!(
+                    "found 0, 1, 2, ...; if they count the columns, write the {count} names instead, otherwise above"
+                )
             } else {
                 format!("found numbers; put a line with the names of the {count} columns above them")
             };
@@ -179,8 +177,7 @@ impl Header {
             scene: None,
             class: None,
             keep: choice.keep.as_ref().map(|(name, _)| index(name)).transpose()?,
-            mark: layout.mark,
-            frames_beside: None,
+            marks: layout.mark.into_iter().collect(),
             groups: layout.constant.into_iter().collect(),
             unread: Vec::new(),
             remarks,
@@ -221,18 +218,9 @@ impl Roles<'_> {
         let is_point = matches!(place, Place::Point(_));
         let of_length = self.of(Role::X).and_then(|named| named.length);
         let of_length = of_length.or(self.of(Role::Y).and_then(|named| named.length));
-        // The columns of a box are not read beside x and y.
-        let class = self.index(Role::Class);
-        let beside = self.found.iter().filter(|named| {
-            is_point && named.role > Role::Class || named.role == Role::Class && Some(named.index) != class
-        });
-        let mut unread: Vec<usize> = beside
-            .map(|named| named.index)
-            .chain(self.unknown.iter().copied())
-            .collect();
-        unread.sort_unstable();
+        let unread = self.unread(is_point);
         Ok(Header {
-            remarks: self.remarks(time, is_point),
+            remarks: self.remarks(time, is_point, choice.unit.is_none() && of_length.is_none()),
             time: match (time.role, time.time_unit) {
                 (Role::Frame, _) => TimeColumn::Frame,
                 (_, None) => TimeColumn::Time,
@@ -249,10 +237,12 @@ impl Roles<'_> {
                 Some(unit) => unit.per_metre(),
             },
             scene: self.index(Role::Scene),
-            class,
-            mark: (self.index(Role::Lost).map(|index| (index, true)))
-                .or(self.index(Role::Valid).map(|index| (index, false))),
-            frames_beside: self.frames_beside(time),
+            class: self.index(Role::Class),
+            marks: [(Role::Lost, true), (Role::Valid, false)]
+                .map(|(role, left_out)| Some((self.index(role)?, left_out)))
+                .into_iter()
+                .flatten()
+                .collect(),
             groups: match self.of(Role::Scene) {
                 Some(_) => Vec::new(),
                 None => unread.iter().copied().filter(|&index| self.is_group(index)).collect(),
@@ -262,8 +252,20 @@ impl Roles<'_> {
         })
     }
 
+    /// The columns that are not read, in order: those of a box beside x and y, too.
+    fn unread(&self, is_point: bool) -> Vec<usize> {
+        let beside = self.found.iter().filter(|named| {
+            let is_further = named.role.may_repeat() && Some(named.index) != self.index(named.role);
+            is_further || is_point && named.role > Role::Class
+        });
+        let beside = beside.map(|named| named.index);
+        let mut unread: Vec<usize> = beside.chain(self.unknown.iter().copied()).collect();
+        unread.sort_unstable();
+        unread
+    }
+
     /// What was chosen although it may be otherwise.
-    fn remarks(&self, time: &Named, is_point: bool) -> Vec<String> {
+    fn remarks(&self, time: &Named, is_point: bool, is_assumed: bool) -> Vec<String> {
         let mut remarks = Vec::new();
         if let Some(frame) = self.of(Role::Frame).filter(|frame| frame.index != time.index) {
             let [when, other] = [time, frame].map(|named| quoted(self.names[named.index]));
@@ -272,7 +274,7 @@ impl Roles<'_> {
             ));
         }
         let size = self.index(Role::Width).zip(self.index(Role::Height));
-        if let Some(x) = self.index(Role::X).filter(|_| is_point && size.is_some()) {
+        if let Some(x) = self.index(Role::X).filter(|_| is_point && is_assumed && size.is_some()) {
             let x = quoted(self.names[x]);
             remarks.push(if x.eq_ignore_ascii_case("x") {
                 "x and y are read as the position; if they are the corner of the box, give --columns left=x,top=y"
@@ -299,13 +301,6 @@ impl Roles<'_> {
 
     fn place(&self) -> Option<Place> {
         self.point().or_else(|| self.corner())
-    }
-
-    fn frames_beside(&self, time: &Named) -> Option<FramesBeside> {
-        // One scene may end at a later frame than the next one begins at.
-        let is_one_clock = time.role == Role::Time && self.of(Role::Scene).is_none();
-        let frames = self.index(Role::Frame).filter(|_| is_one_clock);
-        frames.map(FramesBeside::new)
     }
 
     fn is_group(&self, index: usize) -> bool {
@@ -349,7 +344,7 @@ impl Roles<'_> {
     fn repeated(&self) -> Vec<Fault> {
         let mut faults = Vec::new();
         for named in &self.found {
-            let first = self.of(named.role).filter(|_| named.role != Role::Class);
+            let first = self.of(named.role).filter(|_| !named.role.may_repeat());
             if let Some(first) = first.filter(|first| first.index != named.index) {
                 let [first, again] = [first, named].map(|named| quoted(self.names[named.index]));
                 let fault = format!("the columns {first:?} and {again:?} both say the same");

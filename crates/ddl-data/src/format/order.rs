@@ -12,7 +12,7 @@ const MUCH_LONGER: f64 = 5.0;
 const MORE: f64 = 2.0;
 
 /// If the tracks of both readings have fewer rows in the mean, neither is right, unless there are few rows.
-const LEAST: f64 = 1.5;
+const LEAST: f64 = 1.1;
 const FEW_ROWS: usize = 20;
 
 /// What the first two of four or more columns are.

@@ -4,6 +4,9 @@ use ddl_core::Position;
 
 use crate::format::place::{FilePlace, Misread};
 
+/// What a size of 0 may be wrong by.
+const ROUNDING: f64 = 1e-6;
+
 /// The columns of a position.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Place {
@@ -47,9 +50,16 @@ impl Place {
             ),
             _ => ([third - left, fourth - top], [0.5 * (left + third), fourth]),
         };
-        if let Some(side) = size.iter().position(|&side| side < 0.0) {
-            let problem = "the box ends before it begins; if these are other columns, say which are which (--columns \
-                           left=NAME,width=NAME,...)";
+        let is_backward = size.map(|side| side < -ROUNDING);
+        // Corners may have any order along one axis, such as y upwards.
+        let is_wrong = match self {
+            Self::Foot(_) => is_backward.contains(&true),
+            _ => !is_backward.contains(&false),
+        };
+        if is_wrong {
+            let problem = "the box ends before it begins; leave out rows without a box, or say which columns are which \
+                           (--columns left=NAME,width=NAME,...)";
+            let side = usize::from(!is_backward[0]);
             return Err(FilePlace::field(line, columns[2 + side] + 1).wrong(problem));
         }
         Ok(position)

@@ -1,11 +1,11 @@
 //! How the format of a file is recognised.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
-use crate::format::comments::{is_comment, names_in_comment};
+use crate::format::column_names::count_columns;
+use crate::format::comments::{is_comment, names_in_comments};
 use crate::format::edinburgh;
 use crate::format::kind::Format;
 use crate::format::order::{MOST_ROWS, Order, order};
@@ -14,8 +14,8 @@ use crate::format::separator::Separator;
 use crate::format::text::end_of_lines;
 use crate::format::vsp;
 
-/// Heights in the fifth column of a file in centimetres: people in metres are lower, and nobody is higher.
-const CENTIMETRES: std::ops::RangeInclusive<f64> = 20.0..=230.0;
+/// Least height in the fifth column of a file in centimetres: people in metres are lower.
+const LEAST_CENTIMETRES: f64 = 20.0;
 /// Seconds since 1970 that show that a column holds times.
 const LEAST_TIME: f64 = 1e8;
 
@@ -70,7 +70,7 @@ impl Format {
         }
         let recognised = match (first.len(), separator) {
             (4, _) => lines.of_four(separator),
-            (5, Separator::Blanks) => lines.of_five(separator),
+            (5, Separator::Blanks) => Ok(lines.of_five(separator)),
             (_, Separator::Blanks) if !named("csv") => Ok(Self::SocialGan),
             _ => Ok(Self::Table),
         };
@@ -121,8 +121,8 @@ impl<'a> Lines<'a> {
 
     fn has_header_in_comment(self, count: usize, choice: &ColumnChoice) -> bool {
         let lines = self.text.split(self.end);
-        let mut comments = lines.take_while(|line| line.trim().is_empty() || is_comment(line));
-        comments.any(|comment| names_in_comment(comment, count, choice).is_some())
+        let comments = lines.take_while(|line| line.trim().is_empty() || is_comment(line));
+        names_in_comments(comments, count, choice).is_some()
     }
 
     /// Whether the lines are four of numbers. Four lines of four numbers may also be a table whose header was
@@ -174,28 +174,18 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// `PeTrack` writes the pedestrian first; rows in which the frame is first are refused for their fifth column. Rows
-    /// with one first number show no order.
-    fn of_five(self, separator: Separator) -> Result<Format, String> {
+    /// `PeTrack` writes the pedestrian first; rows in which the frame is first are refused for their fifth column. A
+    /// single row shows no order.
+    fn of_five(self, separator: Separator) -> Format {
         let rows = || self.numbers::<5>(separator);
-        let has_two = rows().map(|[first, ..]| first.to_bits()).collect::<BTreeSet<_>>().len() > 1;
-        if has_two && self.of_four(separator)? == Format::SocialGan {
-            Ok(Format::SocialGan)
-        } else if rows().all(|[.., height]| CENTIMETRES.contains(&height)) {
-            Ok(Format::PeTrackCm)
+        if rows().nth(1).is_some() && self.order(separator) == Order::FrameFirst {
+            Format::SocialGan
+        } else if rows().all(|[.., height]| height >= LEAST_CENTIMETRES) {
+            Format::PeTrackCm
         } else {
-            Ok(Format::PeTrack)
+            Format::PeTrack
         }
     }
-}
-
-/// Whether these are 0, 1, 2, ..., as in the first line of a table whose columns have no names.
-pub(super) fn count_columns<'a>(names: impl Iterator<Item = &'a str>) -> bool {
-    let names: Vec<&str> = names.skip_while(|name| name.is_empty()).collect();
-    names.len() > 2
-        && (0..)
-            .zip(&names)
-            .all(|(index, name): (usize, _)| **name == index.to_string())
 }
 
 /// The fields of a line, without empty ones at its end; numbers have a decimal point.

@@ -15,12 +15,13 @@ const VEHICLES: &str = "car cars veh vehicle truck trucks bus van trailer tram t
 const PEOPLE: &str = "pedestrian pedestrians ped peds person persons people human";
 /// Words beside those of people that do not change what they are.
 const OF_PEOPLE: &str = "type class adult child moving standing sitting walking";
-/// Words of classes that no row of a person has, as in `NonPedestrian`.
-const DENIALS: &str = "non not no false ignore ignored";
+/// First words of classes that deny people, as in `NonPedestrian`.
+const DENIALS: &str = "non not";
 /// Reasons to leave rows out that are counted, each for itself.
 const MOST_REASONS: usize = 20;
 /// Classes after which a stream tells no more of them.
 const MOST_TOLD: usize = 2;
+pub(super) const UNTRACKED: &str = "with the pedestrian -1, detections without a track";
 /// A position that is to be forecast (TrajNet).
 const UNKNOWN: &str = "?";
 
@@ -31,8 +32,8 @@ pub(super) struct RowFilter {
     class: Option<(usize, Option<&'static str>)>,
     /// The column that the user names, its name, and its value in rows that count.
     keep: Option<(usize, String, String)>,
-    /// The column that marks rows, the mark of those that do not count, and its name.
-    mark: Option<(usize, bool, String)>,
+    /// The columns that mark rows, the mark of those that do not count, and their names.
+    marks: Vec<(usize, bool, String)>,
     /// Classes without a known meaning that were read.
     classes: BTreeSet<String>,
     left_out: BTreeMap<String, usize>,
@@ -50,11 +51,13 @@ impl RowFilter {
         };
         // What marks rows or their class may be what is kept.
         let not_kept = |index: usize| Some(index) != header.keep;
-        let mark = header.mark.filter(|&(index, _)| not_kept(index));
+        let marks = header.marks.iter().filter(|(index, _)| not_kept(*index));
         Self {
             class: class.filter(|&(index, _)| not_kept(index)),
             keep: keep.map(|(index, (_, value))| (index, names[index].clone(), value.clone())),
-            mark: mark.map(|(index, left_out)| (index, left_out, names[index].clone())),
+            marks: marks
+                .map(|&(index, left_out)| (index, left_out, names[index].clone()))
+                .collect(),
             ..Self::default()
         }
     }
@@ -76,8 +79,11 @@ impl RowFilter {
     }
 
     fn reason(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Result<Option<String>, (usize, String)> {
-        if let Some((index, left_out, name)) = &self.mark {
+        for (index, left_out, name) in &self.marks {
             let found = &*fields[*index];
+            if found.is_empty() {
+                continue;
+            }
             let is_marked = is_marked(found).ok_or_else(|| {
                 let [name, found] = [name, found].map(field::quoted);
                 let wanted = format!("{name} must be 0, 1, yes or no, found {found:?}");
@@ -161,7 +167,9 @@ impl RowFilter {
 /// Whether a class names something else than people on foot, as `car` and `vehicle.bicycle` do.
 pub fn is_vehicle(class: &str) -> bool {
     let is_other = has_word_of(VEHICLES, class) && !has_word_of(PEOPLE, class);
-    is_other || is_one_of(VEHICLES, &class.to_ascii_lowercase()) || has_word_of(DENIALS, class)
+    let is_denied = words(class).first().is_some_and(|word| is_one_of(DENIALS, word))
+        && words(class).last().is_some_and(|word| is_one_of(PEOPLE, word));
+    is_other || is_denied || is_one_of(VEHICLES, &class.to_ascii_lowercase())
 }
 
 fn has_word_of(names: &str, class: &str) -> bool {
@@ -173,7 +181,7 @@ fn is_marked(mark: &str) -> Option<bool> {
     let number = number.filter(|mark: &f64| !mark.is_nan());
     match mark.to_ascii_lowercase().as_str() {
         "yes" | "y" | "true" | "t" => Some(true),
-        "no" | "n" | "false" | "f" | "" => Some(false),
+        "no" | "n" | "false" | "f" => Some(false),
         _ => number.map(|mark| mark != 0.0),
     }
 }

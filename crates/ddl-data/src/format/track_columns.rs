@@ -7,14 +7,14 @@ use ddl_core::Position;
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{LengthUnit, is_of_time};
-use crate::format::comments::{is_comment, names_in_comment};
+use crate::format::comments::{is_comment, names_in_comments};
 use crate::format::field::{self, PedestrianField};
 use crate::format::header::{Header, TimeColumn, first_of, is_camera};
 use crate::format::kind::Format;
 use crate::format::layouts::Layout;
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::field_count;
-use crate::format::row_filter::{RowFilter, are_alike};
+use crate::format::row_filter::{RowFilter, UNTRACKED, are_alike};
 use crate::format::rows::TrackRow;
 use crate::format::separator::Separator;
 use crate::scene_name::SceneName;
@@ -22,7 +22,6 @@ use crate::scene_name::SceneName;
 const FRACTIONS: &str = "the column frame has fractions: it is read as seconds";
 const WHOLE_TIMES: &str = "the times are whole numbers: they are read as seconds; call the column frame if they count \
     frames, or time_ms, time_us or time_ns";
-const UNTRACKED: &str = "with the pedestrian -1, detections without a track";
 const UNNAMED: &str = "the rows have no header: they are read as frame, pedestrian, x, y";
 const OF_ONE: &str = "; files of one pedestrian each, with y, x and frame (Grand Central), become one by: for f in \
     *.txt; do xargs -n3 < $f | awk -v p=${f%.txt} '{print $3, p, $2, $1}'; done > all.tracks";
@@ -83,10 +82,7 @@ impl TrackColumns {
         let separator = Separator::of(first);
         let fields = separator.fields(first, line)?;
         if fields.iter().any(|field| field.parse::<f64>().is_ok())
-            && let Some(names) = comments
-                .iter()
-                .rev()
-                .find_map(|comment| names_in_comment(comment, fields.len(), choice))
+            && let Some(names) = names_in_comments(comments.iter().copied(), fields.len(), choice)
         {
             let count = fields.len() - fields.iter().rev().take_while(|field| field.is_empty()).count();
             let header = Header::of(&names.iter().map(String::as_str).collect::<Vec<_>>(), choice);
@@ -347,9 +343,6 @@ impl TrackColumns {
         let mut frame = place(self.header.frame).read(field::frame(&time, "frame", unit))?;
         let is_whole = frame % STAMPS_A_SECOND == 0;
         self.assumed_unit = self.assumed_unit.filter(|unit| is_whole || *unit != WHOLE_TIMES);
-        if let Some(frames) = &mut self.header.frames_beside {
-            frames.check(fields, frame, line)?;
-        }
         if let Some((index, name, a_second)) = self.header.rest {
             let rest = place(index).read(field::integer(&fields[index], name))?;
             if !(0..a_second).contains(&rest) {
@@ -358,12 +351,14 @@ impl TrackColumns {
             frame += rest * STAMPS_A_SECOND / a_second;
         }
         let name = &fields[self.header.pedestrian];
+        // Only `12,0` is a number; `1,000` and `3,12` are names.
+        let is_float = name.ends_with(",0") || name.ends_with(",00");
         let number = self.separator.with_point(name);
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
             field::integer(&number, "pedestrian").map(|number| PedestrianField::Number(number, None))
         } else {
-            field::pedestrian(if self.is_number(name) { &number } else { name }, "pedestrian")
+            field::pedestrian(if is_float { &number } else { name }, "pedestrian")
         };
         let pedestrian = place(self.header.pedestrian).read(pedestrian)?;
         if pedestrian == PedestrianField::Number(-1, None) {

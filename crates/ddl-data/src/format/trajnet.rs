@@ -12,7 +12,7 @@ use crate::clock::TimeUnit;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::when;
-use crate::format::row_filter::{RowFilter, is_vehicle};
+use crate::format::row_filter::{RowFilter, UNTRACKED, is_vehicle};
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
@@ -136,6 +136,9 @@ impl TrackFields {
     fn left_out(&self) -> Option<String> {
         if self.prediction_number.is_some() {
             return Some("with a prediction_number".to_owned());
+        }
+        if self.p.as_ref().and_then(Value::as_i64) == Some(-1) {
+            return Some(UNTRACKED.to_owned());
         }
         let class = self.class.as_ref()?.as_str().filter(|class| is_vehicle(class))?;
         Some(format!("of class {}", field::quoted(class)))

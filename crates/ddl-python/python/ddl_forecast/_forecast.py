@@ -108,7 +108,8 @@ class Forecast:
     age : (n,)
         Time since the last row, seconds.
     deviation : (n,)
-        Estimated standard deviation of the last position, metres; 0 with a row there. Too small after missing rows.
+        Estimated standard deviation of the last position, metres; 0 with a row at each step, too small after missing
+        rows.
     uncertainty : (n,)
         Standard deviation that the observation adds at the end of the forecast, metres; 0 with a row at every step.
     certificates : Certificates or None
@@ -147,8 +148,8 @@ class Forecast:
         evidence = parts.pop("certificates")
         table = parts.pop("region_table")
         frames = parts.pop("frames", None)
-        given = parts.pop("ids", None)
-        names = ids if ids is not None else given
+        named = parts.pop("ids", None)
+        names = ids if ids is not None else named
         if names is None:
             names = range(len(parts["paths"]))
         return cls(

@@ -96,8 +96,8 @@ fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) ->
     stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
         bail!(
-            "standard input holds no tracks: the first line must be frame,pedestrian,x,y, followed by a row for each \
-             pedestrian and frame"
+            "standard input holds no tracks, or only rows that are left out (vehicles, lost positions, the pedestrian \
+             -1): the first line must be frame,pedestrian,x,y, followed by a row for each pedestrian and frame"
         );
     }
     if !stream.state.headed {
