@@ -140,10 +140,17 @@ class Forecast:
     joint: bool = False
     _region_table: str | None = field(default=None, repr=False)
     _is_given: bool = field(default=False, repr=False)
+    _left_out: int = field(default=0, repr=False)
 
     @classmethod
     def _of(
-        cls, parts: dict[str, Any], ids: Sequence[Hashable] | None = None, *, joint: bool = False, given: bool = False
+        cls,
+        parts: dict[str, Any],
+        ids: Sequence[Hashable] | None = None,
+        *,
+        joint: bool = False,
+        given: bool = False,
+        left_out: int = 0,
     ) -> Forecast:
         evidence = parts.pop("certificates")
         table = parts.pop("region_table")
@@ -160,6 +167,7 @@ class Forecast:
             joint=joint,
             _region_table=table,
             _is_given=given,
+            _left_out=left_out,
         )
 
     def __len__(self) -> int:
@@ -228,9 +236,9 @@ class Forecast:
             raise ValueError(
                 "the people of this forecast already keep away from the plan it was given: give seen=False"
             )
-        here = int(np.isfinite(self.past[~rows, -1]).all(axis=1).sum())
-        if here > 0:
-            warnings.warn(f"pedestrians who could not be forecast and do not count: {here}", DoubtWarning, stacklevel=2)
+        if self._left_out > 0:
+            words = f"pedestrians who could not be forecast and do not count: {self._left_out}"
+            warnings.warn(words, DoubtWarning, stacklevel=2)
         row = None
         if ego is not None:
             found = np.flatnonzero(self.ids[rows] == ego)

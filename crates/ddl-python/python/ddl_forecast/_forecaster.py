@@ -162,7 +162,12 @@ class Forecaster:
                 raise ValueError(f"ego is row {ego}, which past does not have or does not observe now")
         given = None if plan is None else (plan_rows(plan), ego)
         made, doubt = self._core.forecast(arrays, asked, samples, whole, certificates, joint, given)
-        return _told([Forecast._of(parts, joint=joint, given=given is not None) for parts in made], doubt)
+        forecasts = []
+        for parts, array, count in zip(made, arrays, asked, strict=True):
+            missing = np.isnan(parts["weights"][:, 0]) if parts["weights"].size else np.ones(count, dtype=np.bool_)
+            left_out = int((missing & np.isfinite(array[:count, -1]).all(axis=1)).sum())
+            forecasts.append(Forecast._of(parts, joint=joint, given=given is not None, left_out=left_out))
+        return _told(forecasts, doubt)
 
     def forecast_recording(
         self,
