@@ -179,7 +179,7 @@ fn convention_of(data: Option<&Path>, of_model: Convention) -> Convention {
 
 fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow::Result<Dataset> {
     if convention == Convention::Own {
-        let data = data.context("give the folder of your own recordings: --data FOLDER")?;
+        let data = data.context("give --data FOLDER, your own recordings, or the model of a fold")?;
         let files = recordings::files(&[data.to_owned()], units)?;
         let read = recordings::read(&files, units)?;
         recordings::tell_notes(&read);

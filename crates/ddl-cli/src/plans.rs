@@ -78,7 +78,6 @@ pub(crate) struct NamedPlan {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
 struct Row {
     #[serde(default)]
     plan: String,
@@ -98,13 +97,28 @@ pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
         .trim(csv::Trim::All)
         .comment(Some(b'#'))
         .from_reader(text.as_bytes());
+    let headers = reader
+        .headers()
+        .with_context(|| format!("cannot read the plan {name}"))?
+        .clone();
+    for column in ["t", "x", "y"] {
+        if !headers.iter().any(|header| header == column) {
+            bail!(
+                "{name}, line 1: no column `{column}`; a plan has the columns t,x,y (seconds after the moment, \
+                 metres), and may have radius and plan"
+            );
+        }
+    }
+    let known = ["t", "x", "y", "radius", "plan"];
+    if let Some(other) = headers.iter().find(|header| !known.contains(header)) {
+        bail!(
+            "{name}, line 1: unknown column `{other}`; a plan has the columns {}",
+            known.join(", ")
+        );
+    }
     let mut plans: Vec<(String, Vec<PlanPoint>)> = Vec::new();
     for row in reader.deserialize() {
-        let Row { plan, t, x, y, radius } = row.with_context(|| {
-            format!(
-                "{name}; a plan has the columns t,x,y (seconds after the moment, metres), and may have radius, plan"
-            )
-        })?;
+        let Row { plan, t, x, y, radius } = row.with_context(|| format!("{name}"))?;
         let point = PlanPoint {
             time: t,
             position: [x, y],
