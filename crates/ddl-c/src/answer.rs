@@ -2,7 +2,7 @@
 
 use crate::boundary::{Failure, c_text};
 use crate::layout::{ddl_cells, ddl_misfit, ddl_occupancy, ddl_point, ddl_risks, ddl_view};
-use crate::model::{Request, Threads};
+use crate::model::Threads;
 use ddl::Forecast;
 use ddl::data::{HORIZON, Misfit, OBSERVED, ObservationQuality, Window};
 use ddl::scene::{Area, Futures, Occupancy, Plan};
@@ -31,8 +31,9 @@ pub(crate) struct Answer {
 pub(crate) struct Held {
     pub(crate) window: Window,
     pub(crate) forecast: Forecast,
-    /// What it was asked for.
-    pub(crate) request: Request,
+    pub(crate) is_joint: bool,
+    /// Whether people were asked to respond to a plan.
+    pub(crate) has_plan: bool,
     pub(crate) threads: Arc<Threads>,
 }
 
@@ -162,7 +163,7 @@ impl Answer {
         seen: bool,
     ) -> Result<(), Failure> {
         let (held, futures) = self.joint()?;
-        if seen && matches!(held.request, Request::Joint(Some(_))) {
+        if seen && held.has_plan {
             let words = "the people of this forecast already keep away from the plan it was given: set unseen";
             return Err(Failure::invalid(words));
         }
@@ -233,10 +234,7 @@ impl Answer {
     }
 
     fn joint(&self) -> Result<(&Held, Futures), Failure> {
-        let held = self
-            .held
-            .as_ref()
-            .filter(|held| matches!(held.request, Request::Joint(_)));
+        let held = self.held.as_ref().filter(|held| held.is_joint);
         let words = "risk and occupancy need a forecast of somebody, with joint set in its request";
         let held = held.ok_or_else(|| Failure::invalid(words))?;
         let futures = Futures::new(&held.window, held.forecast.clone()).map_err(Failure::invalid)?;

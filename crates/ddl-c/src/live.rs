@@ -70,7 +70,8 @@ impl Live {
         let held = made.map(|now| Held {
             window: now.window,
             forecast: now.forecast,
-            request: request.clone(),
+            is_joint: matches!(request, Request::Joint(_)),
+            has_plan: matches!(request, Request::Joint(Some(_))),
             threads: Arc::clone(&self.threads),
         });
         if place.live.tracks().is_moment() {

@@ -15,7 +15,7 @@ pub(crate) struct Model {
 }
 
 /// What to forecast.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub(crate) enum Request {
     Hypotheses,
     Joint(Option<GivenPlan>),
@@ -43,7 +43,8 @@ impl Model {
         Ok(Held {
             forecast: self.threads.run(forecast)?,
             window,
-            request: request.clone(),
+            is_joint: matches!(request, Request::Joint(_)),
+            has_plan: matches!(request, Request::Joint(Some(_))),
             threads: Arc::clone(&self.threads),
         })
     }

@@ -31,7 +31,7 @@ pub(crate) fn futures(starts: &[Position], velocities: &[Vec<Position>], weights
 }
 
 /// The same scene, whose pedestrians were seen a while ago: their positions have this deviation (m).
-pub(crate) fn unsure(futures: &Futures, deviation: f64) -> Futures {
+pub(crate) fn with_deviation(futures: &Futures, deviation: f64) -> Futures {
     let n = futures.pedestrians();
     let tracks = (0..n).map(|i| vec![futures.present(i); OBSERVED]).collect();
     let ids = (0..n).map(|i| PedestrianId(i as i64)).collect();

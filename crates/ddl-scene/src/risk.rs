@@ -123,18 +123,18 @@ impl Futures {
             let mut nobody: Option<[[f64; HORIZON]; 2]> = None;
             for &i in &near {
                 let Some(hits) = crowd.hits(sweep, i, k) else { continue };
-                // Nobody can keep away from what is close already. With the odds of all other hits divided by a factor,
-                // those of a part of them fall with them.
-                let [first, later] = hits.until[HORIZON - 1];
-                let later = later / f64::max(1.0 - first, f64::MIN_POSITIVE);
-                let seen = odds[i] / (1.0 - later + later * odds[i]);
+                // People who are close already cannot keep away. The odds that the others come close are divided by a
+                // factor; the probability that they do so by an earlier step falls in proportion.
+                let [close_now, close_later] = hits.until[HORIZON - 1];
+                let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
+                let reduction = odds[i] / (1.0 - of_others + of_others * odds[i]);
                 let nobody = nobody.get_or_insert([[1.0; HORIZON]; 2]);
                 for (nobody, hits) in nobody.iter_mut().zip([&hits.steps, &hits.until]) {
-                    for (nobody, [first, later]) in nobody.iter_mut().zip(hits) {
-                        *nobody *= 1.0 - first - seen * later;
+                    for (nobody, [close_now, close_later]) in nobody.iter_mut().zip(hits) {
+                        *nobody *= 1.0 - close_now - reduction * close_later;
                     }
                 }
-                pedestrians[i] += weight * (first + seen * hits.until[HORIZON - 1][1]);
+                pedestrians[i] += weight * (close_now + reduction * close_later);
             }
             for (sums, nobody) in [&mut steps, &mut until].into_iter().zip(nobody.iter().flatten()) {
                 for (sum, nobody) in sums.iter_mut().zip(nobody) {

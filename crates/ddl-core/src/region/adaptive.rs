@@ -115,7 +115,7 @@ impl AdaptiveRegions {
     }
 }
 
-/// The pedestrians whose tracks began within the window, each with the last position before that.
+/// The pedestrians whose tracks began within the window, each with the last frame of the window before the track.
 fn young(window: &Window) -> BTreeMap<PedestrianId, i64> {
     let pedestrians = window.pedestrians().iter().enumerate();
     let begun = pedestrians.filter_map(|(i, id)| {

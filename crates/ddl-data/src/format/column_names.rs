@@ -227,10 +227,7 @@ pub(super) fn rest_beside(names: &[String], seconds: usize) -> Option<Rest> {
 /// Whether these are 0, 1, 2, ..., as in the first line of a table whose columns have no names.
 pub(super) fn count_columns<'a>(names: impl Iterator<Item = &'a str>) -> bool {
     let names: Vec<&str> = names.skip_while(|name| name.is_empty()).collect();
-    names.len() > 2
-        && (0..)
-            .zip(&names)
-            .all(|(index, name): (usize, _)| **name == index.to_string())
+    names.len() > 2 && names.iter().enumerate().all(|(index, name)| *name == index.to_string())
 }
 
 /// Whether the last word of a name is a unit of time.

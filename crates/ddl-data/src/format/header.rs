@@ -239,9 +239,8 @@ impl Roles<'_> {
             scene: self.index(Role::Scene),
             class: self.index(Role::Class),
             marks: [(Role::Lost, true), (Role::Valid, false)]
-                .map(|(role, left_out)| Some((self.index(role)?, left_out)))
                 .into_iter()
-                .flatten()
+                .filter_map(|(role, left_out)| Some((self.index(role)?, left_out)))
                 .collect(),
             groups: match self.of(Role::Scene) {
                 Some(_) => Vec::new(),

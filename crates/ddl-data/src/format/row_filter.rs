@@ -116,10 +116,9 @@ impl RowFilter {
             if kept.map_or_else(|| is_vehicle(class), |kept| !class.eq_ignore_ascii_case(kept)) {
                 return Some(format!("of class {}", field::quoted(class)));
             }
-            let mut of_people = words(class)
-                .into_iter()
-                .map(|word| is_one_of(PEOPLE, &word) || is_one_of(OF_PEOPLE, &word));
-            let is_known = has_word_of(PEOPLE, class) && of_people.all(|is_known| is_known);
+            let words = words(class);
+            let is_of_people = |word: &String| is_one_of(PEOPLE, word) || is_one_of(OF_PEOPLE, word);
+            let is_known = has_word_of(PEOPLE, &words) && words.iter().all(is_of_people);
             if kept.is_none() && !is_known && self.classes.len() < MOST_REASONS {
                 self.classes.insert(field::quoted(class));
             }
@@ -166,14 +165,15 @@ impl RowFilter {
 
 /// Whether a class names something else than people on foot, as `car` and `vehicle.bicycle` do.
 pub fn is_vehicle(class: &str) -> bool {
-    let is_other = has_word_of(VEHICLES, class) && !has_word_of(PEOPLE, class);
-    let is_denied = words(class).first().is_some_and(|word| is_one_of(DENIALS, word))
-        && words(class).last().is_some_and(|word| is_one_of(PEOPLE, word));
+    let words = words(class);
+    let is_other = has_word_of(VEHICLES, &words) && !has_word_of(PEOPLE, &words);
+    let is_denied = words.first().is_some_and(|word| is_one_of(DENIALS, word))
+        && words.last().is_some_and(|word| is_one_of(PEOPLE, word));
     is_other || is_denied || is_one_of(VEHICLES, &class.to_ascii_lowercase())
 }
 
-fn has_word_of(names: &str, class: &str) -> bool {
-    words(class).iter().any(|word| is_one_of(names, word))
+fn has_word_of(names: &str, words: &[String]) -> bool {
+    words.iter().any(|word| is_one_of(names, word))
 }
 
 fn is_marked(mark: &str) -> Option<bool> {

@@ -1,5 +1,5 @@
 use super::mass::{MassTable, mass};
-use crate::fixture::{futures, unsure};
+use crate::fixture::{futures, with_deviation};
 use crate::risk::probability;
 use crate::{Area, Futures, Occupancy};
 use ddl_core::{Position, distance};
@@ -110,7 +110,7 @@ fn files_of_others() {
 
 #[test]
 fn who_was_seen_a_while_ago_is_not_certain_now() {
-    let futures = unsure(&futures(&[[0.0; 2]], &[vec![[0.0; 2]]], &[1.0], &[0.5]), 0.4);
+    let futures = with_deviation(&futures(&[[0.0; 2]], &[vec![[0.0; 2]]], &[1.0], &[0.5]), 0.4);
     let area = Area::new([-0.05; 2], [0.05; 2], 0.1).unwrap();
     let found = f64::from(grids(&futures, &area, &[0.0])[0].probabilities[0]);
     assert!((found - probability(0.25 / 0.4)).abs() < 1e-3, "{found}");

@@ -1,5 +1,5 @@
 use super::{DEVIATIONS, crowd::Crowd, legs, quadrature::Quadrature};
-use crate::fixture::{futures, plan, unsure};
+use crate::fixture::{futures, plan, with_deviation};
 use crate::{Futures, Plan, Risk, SceneError};
 use ddl_core::{Forecast, HORIZON, Position, TIME_STEP, Window};
 use proptest::{collection::vec, prelude::*};
@@ -98,7 +98,7 @@ proptest! {
         let (sweep, legs) = (crowd.sweep(&plan, within), legs(&plan));
         for (i, k) in (0..4).flat_map(|i| (0..3).map(move |k| (i, k))) {
             let hits = crowd.hits(&sweep, i, k).map_or([[[0.0; 2]; HORIZON]; 2], |hits| [hits.steps, hits.until]);
-            let hits = hits.map(|hits| hits.map(|[first, later]| (64.0 * (first + later)) as u32));
+            let hits = hits.map(|hits| hits.map(|[first, later]| (DEVIATIONS as f64 * (first + later)) as u32));
             for step in 0..HORIZON {
                 for (hits, first) in hits.iter().zip([step, 0]) {
                     let (_, after) = legs.split_at(legs.partition_point(|leg| leg.step < first));
@@ -155,10 +155,10 @@ proptest! {
         prop_assert!(close(&disc.until, &point.until, 0.02), "{disc:?} {point:?}");
     }
 
-    /// Nobody can keep away from a plan to whom it is close already.
+    /// The risk of a seen plan is at least the probability that somebody is close at the moment itself.
     #[test]
     fn who_is_close_now_stays_a_risk((starts, velocities, scales, rows) in scenes(), deviation in 0.0..0.5f64) {
-        let crowd = unsure(&futures(&starts, &velocities, &WEIGHTS, &scales), deviation);
+        let crowd = with_deviation(&futures(&starts, &velocities, &WEIGHTS, &scales), deviation);
         let plan = plan(&rows);
         let [x, y] = plan.at(0.0).position;
         let reach = 0.4 + plan.at(0.0).radius;
@@ -175,8 +175,8 @@ proptest! {
         for ((seen, unseen), now) in seen.pedestrians.iter().zip(&unseen.pedestrians).zip(&now) {
             prop_assert!(now - 1e-12 <= *seen && *seen <= unseen + 1e-12, "{now} {seen} {unseen}");
         }
-        let nobody: f64 = now.iter().map(|now| 1.0 - now).product();
-        prop_assert!(seen.total >= 1.0 - nobody - 1e-12 && seen.total <= unseen.total + 1e-12);
+        let nobody_now: f64 = now.iter().map(|close_now| 1.0 - close_now).product();
+        prop_assert!(seen.total >= 1.0 - nobody_now - 1e-12 && seen.total <= unseen.total + 1e-12);
     }
 
     /// After its last row a plan stands: a row that says so changes nothing, and a plan cut short has the same past.

@@ -5,7 +5,7 @@ use ddl_data::Window;
 
 const PEDESTRIANS: usize = 128;
 
-/// Consecutive windows of about 128 pedestrians in all.
+/// Consecutive windows of at most 128 pedestrians in all, or one larger window.
 pub(crate) fn parts(windows: &[Window]) -> impl Iterator<Item = &[Window]> {
     Window::parts(windows, PEDESTRIANS)
 }

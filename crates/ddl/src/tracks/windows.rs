@@ -2,9 +2,9 @@
 
 use ddl_data::{Completeness, LiveTracks};
 
-/// These tracks with windows of all pedestrians, or only of those tracked for the `whole` 8 steps; of `every` moment so
-/// many seconds apart, or only of the `last` one. Pedestrians are carried on until `max_age` seconds. `None` stands for
-/// what suits the recording.
+/// These tracks with the options of their windows. `whole`: only pedestrians tracked for all 8 steps. `max_age`: the
+/// age of the last row (s) up to which a pedestrian is carried on. `every`: the time between two windows (s). `last`:
+/// only the last window is wanted. `None`: the default of [`LiveTracks`].
 ///
 /// # Errors
 /// When seconds are out of range.
