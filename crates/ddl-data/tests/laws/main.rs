@@ -11,6 +11,7 @@ mod live;
 mod mistakes;
 mod names;
 mod observe;
+mod observe_reference;
 mod readers;
 mod recordings;
 mod summary;

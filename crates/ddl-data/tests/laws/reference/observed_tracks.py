@@ -1,0 +1,389 @@
+# Writes observed_tracks.json: made-up films, and what was observed of them, with numpy 2.4.6. Written from the words of
+# `LiveTracks` and `src/observe`: filters of matrices, and the 8 positions as one conditional distribution of all rows.
+# `python3 observed_tracks.py` in this folder.
+import copy
+import json
+import math
+from collections import deque
+
+import numpy as np
+
+NOISES = [0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4]
+AGILITIES = [0.001, 0.005, 0.02, 0.08]
+NOISE = np.tile(NOISES, 4)
+AGILITY = np.repeat(AGILITIES, 12)
+UNUSUAL = 10 * np.log(NOISE / 0.02) ** 2 + np.log(AGILITY / 0.02) ** 2
+LEFT_OUT, BEGUN_ANEW = 0, 1
+
+
+def motion(seconds):
+    return np.array([[1, seconds], [0, 1]])
+
+
+def shaking(seconds, agility):
+    """Covariance that a random acceleration adds; of a motion backwards, if the time is negative."""
+    long = abs(seconds)
+    cross = math.copysign(long**2 / 2, seconds)
+    return agility * np.array([[long**3 / 3, cross], [cross, long]])
+
+
+class Filter:
+    """Mean (position and velocity by axis) and covariance of a pedestrian, for one noise and agility."""
+
+    def __init__(self, position, noise, agility):
+        self.mean = np.array([position, [0, 0]], float)
+        self.cov = np.diag([noise**2, 2.0])
+        self.noise, self.agility = noise, agility
+
+    def after(self, seconds):
+        later = copy.copy(self)
+        later.mean = motion(seconds) @ self.mean
+        later.cov = motion(seconds) @ self.cov @ motion(seconds).T + shaking(seconds, self.agility)
+        return later
+
+    def seen_at(self, position):
+        seen = copy.copy(self)
+        gain = self.cov[:, 0] / (self.cov[0, 0] + self.noise**2)
+        seen.mean = self.mean + np.outer(gain, position - self.mean[0])
+        seen.cov = self.cov - np.outer(gain, self.cov[0])
+        return seen
+
+    def speed(self):
+        return np.hypot(*self.mean[1])
+
+
+class RecordingNoise:
+    def __init__(self):
+        self.evidence, self.rows = np.zeros(48), 0.0
+
+
+class TrackNoise:
+    def __init__(self, position):
+        self.evidence, self.rows = np.zeros(48), 1
+        self.filters = [Filter(position, noise, agility) for noise, agility in zip(NOISE, AGILITY)]
+
+    def level(self, recording):
+        share = min(1, 200 / recording.rows) if recording.rows else 1
+        return int(np.argmax(self.evidence + share * recording.evidence - UNUSUAL))
+
+    def copied(self):
+        same = copy.copy(self)
+        same.evidence, same.filters = self.evidence.copy(), list(self.filters)
+        return same
+
+    def add(self, position, seconds, recording):
+        self.rows += 1
+        expected = [one.after(seconds) for one in self.filters]
+        self.evidence = self.evidence * math.exp(-seconds / 3)
+        if self.rows > 3:
+            variance = np.array([one.cov[0, 0] for one in expected]) + NOISE**2
+            off = np.array([np.hypot(*(position - one.mean[0])) for one in expected])
+            # Student's t in two dimensions with 4 degrees of freedom, without its constant.
+            likelihood = -3 * np.log(1 + off**2 / variance / 4) - np.log(variance)
+            self.evidence += likelihood
+            keep = 1 - 1 / 5000
+            recording.rows = recording.rows * keep + 1
+            recording.evidence = recording.evidence * keep + likelihood
+        self.filters = [one.seen_at(position) for one in expected]
+
+
+def apart(a, b):
+    return float(np.hypot(*(np.asarray(a) - b)))
+
+
+class Track:
+    def __init__(self, time, position):
+        self.rows = deque([(time, position)])
+        self.noise = TrackNoise(position)
+        self.fastest = (0.0, time)
+        self.turned = None
+        self.suspects = []
+
+    def last(self):
+        return self.rows[-1][0]
+
+    def expected(self, seconds, known):
+        level = self.noise.level(known)
+        expected = self.noise.filters[level].after(seconds)
+        return expected, 4 * math.sqrt(expected.cov[0, 0] + NOISE[level] ** 2)
+
+    def fit(self, time, position, tick, known):
+        seconds = (time - self.last()) * tick
+        expected, margin = self.expected(seconds, known)
+        distance = apart(position, expected.mean[0])
+        own = max(self.fastest[0], expected.speed())
+        turning, fastest, off = 12, 12, distance
+        if len(self.rows) >= 3:
+            turning, fastest = min(1.1 * own, 12), max(2.15, 1.3 * own + 0.45)
+            (t0, p0), (t1, p1) = self.rows[-2], self.rows[-1]
+            off = min(off, apart(p1 + (p1 - p0) * (time - t1) / (t1 - t0), position))
+        way = apart(position, self.rows[-1][1])
+        near = off <= 0.5 + 1.5 * seconds**2 + margin
+        return distance, near and way <= 0.5 + fastest * seconds + margin, way <= turning * seconds + margin
+
+    def goes_on(self, time, position, distance, tick, known):
+        """Whether the row continues the doubtful row before it better than the track."""
+        if distance <= 0.5 or not self.suspects:
+            return False
+        at, seen, _ = self.suspects[-1]
+        then, now = (self.expected((t - self.last()) * tick, known)[0].mean[0] for t in (at, time))
+        return apart(seen + now - then, position) < distance
+
+    def push(self, time, position, tick, known, recording):
+        if (time - self.last()) * tick > 2:
+            self.__init__(time, position)
+            return None
+        distance, is_expected, is_turn = self.fit(time, position, tick, known)
+        if (is_expected or is_turn) and not self.goes_on(time, position, distance, tick, known):
+            self.suspects = []
+            self.turned = None if is_expected else (self.noise.copied(), distance)
+            self.accept(time, position, tick, known, recording)
+            return None
+        if self.turned:
+            (noise, off), self.turned = self.turned, None
+            without = copy.copy(self)
+            without.rows, without.noise, without.suspects = deque(self.rows), noise.copied(), list(self.suspects)
+            wrong, _ = without.rows.pop()
+            if without.fit(time, position, tick, known)[1]:
+                without.accept(time, position, tick, known, recording)
+                self.__dict__ = without.__dict__
+                return wrong, off, LEFT_OUT
+        # Left out, or the beginning of another track?
+        if self.suspects:
+            at, seen, _ = self.suspects[-1]
+            if apart(position, seen) > 0.5 + 4 * (time - at) * tick:
+                self.suspects = []
+        self.suspects.append((time, position, distance))
+        begin, place, off = self.suspects[0]
+        if (time - begin) * tick < 0.3 and (time - self.last()) * tick <= 1:
+            return time, distance, LEFT_OUT
+        others = self.suspects[1:]
+        self.__init__(begin, place)
+        for at, seen, _ in others:
+            self.accept(at, seen, tick, known, recording)
+        return time, off, BEGUN_ANEW
+
+    def accept(self, time, position, tick, known, recording):
+        self.noise.add(position, (time - self.last()) * tick, recording)
+        if len(self.rows) > 1 and (self.rows[-1][0] - self.rows[-2][0]) * tick < 1 / 512:
+            self.rows.pop()
+        self.rows.append((time, position))
+        speed = self.noise.filters[self.noise.level(known)].speed()
+        if speed >= self.fastest[0] or (time - self.fastest[1]) * tick > 1.2:
+            self.fastest = (speed, time)
+
+    def forget_before(self, time, step):
+        while len(self.rows) > 1 and self.rows[1][0] <= time - 11 * step:
+            self.rows.popleft()
+
+    def interval(self):
+        times = [time for time, _ in self.rows][-3:]
+        return min(np.diff(times)) if len(times) == 3 else 0
+
+    def observed(self, time, step, tick, recording):
+        level = self.noise.level(recording)
+        is_short = (self.last() - self.rows[0][0]) * tick < 0.35
+        if len(self.rows) < 2 or is_short and self.noise.filters[level].speed() > 3.5:
+            return None
+        steps = [time - k * step for k in range(7, -1, -1)]
+        on_steps = []
+        for at in steps:
+            near = [(abs(t - at), t, p) for t, p in self.rows if abs(t - at) <= 0.005 * step]
+            on_steps.append(min(near, key=lambda row: row[:2])[2] if near and NOISE[level] <= 0.035 else None)
+        if all(row is not None for row in on_steps):
+            return on_steps, (0, 0.0, 0.0, 0.0)
+        walk = max(NOISE[level], 0.01), AGILITY[level]
+        means, covs = smoothed(list(self.rows), steps, tick, *walk)
+        places = [mean[0] if row is None else row for mean, row in zip(means, on_steps)]
+        clean = Filter(np.zeros(2), 0.02, AGILITY[level])
+        for _ in range(7):
+            clean = clean.after(0.4).seen_at(np.zeros(2))
+        excess = np.sqrt(np.maximum(np.diag(covs[-1] - clean.cov), 0))
+        unseen = sum(at < self.rows[0][0] - 0.005 * step for at in steps)
+        return places, (unseen, (time - self.last()) * tick, *excess)
+
+
+def smoothed(rows, times, tick, noise, agility):
+    """Mean and covariance of the motion at times, given all rows: the condition of one Gaussian distribution."""
+    first, place = rows[0]
+    moments = sorted({first} | {t for t, _ in rows} | {t for t in times if t > first})
+    index = {time: k for k, time in enumerate(moments)}
+    n = len(moments)
+    mean, cov = np.zeros((2 * n, 2)), np.zeros((2 * n, 2 * n))
+    mean[:2], cov[:2, :2] = [place, [0, 0]], np.diag([noise**2, 2.0])
+    for k in range(1, n):
+        seconds = (moments[k] - moments[k - 1]) * tick
+        f, now, before = motion(seconds), slice(2 * k, 2 * k + 2), slice(2 * k - 2, 2 * k)
+        mean[now] = f @ mean[before]
+        cov[now, : 2 * k] = f @ cov[before, : 2 * k]
+        cov[: 2 * k, now] = cov[now, : 2 * k].T
+        cov[now, now] = f @ cov[before, before] @ f.T + shaking(seconds, agility)
+    seen = [2 * index[t] for t, _ in rows[1:]]
+    gain = np.linalg.solve(cov[np.ix_(seen, seen)] + noise**2 * np.eye(len(seen)), cov[seen]).T
+    mean = mean + gain @ (np.array([p for _, p in rows[1:]]) - mean[seen])
+    cov = cov - gain @ cov[seen]
+    means, covs = [], []
+    for time in times:
+        k, back = (index[time], 0.0) if time >= first else (0, (time - first) * tick)
+        part = slice(2 * k, 2 * k + 2)
+        means.append(motion(back) @ mean[part])
+        covs.append(motion(back) @ cov[part, part] @ motion(back).T + shaking(back, agility))
+    return means, covs
+
+
+def exchanges(rows):
+    """Pairs of pedestrians, each of which is seen where the other one was expected."""
+    surprises = []
+    for who, position, (expected, reach) in rows:
+        off = apart(position, expected)
+        if off > reach:
+            surprises.append((who, position, expected, reach, off))
+    found = {}
+    for one in range(len(surprises)):
+        a, at, to, reach, off = surprises[one]
+        for b, at_b, to_b, reach_b, off_b in surprises[one + 1 :]:
+            crossed = [apart(at, to_b), apart(at_b, to)]
+            there = crossed[0] <= 1.5 * reach_b and crossed[1] <= 1.5 * reach
+            if there and 4 * sum(crossed) < off + off_b:
+                for who, far in ((a, off), (b, off_b)):
+                    found.setdefault(who, far)
+                break
+    return found
+
+
+def observe(film):
+    """All windows (tick, and of each pedestrian a summary), the misfits, and the noise."""
+    step, ticks = film["step"], film["ticks"]
+    tick = 0.4 / step
+    max_age = film["max_age"] and film["max_age"] / tick
+    interval = film["interval"] and film["interval"] / tick
+    frames = {}
+    for frame, who, x, y in film["rows"]:
+        frames.setdefault(frame * ticks, []).append((who, np.array([x, y])))
+    tracks, last_rows, noise = {}, {}, RecordingNoise()
+    windows, misfits, due = [], [], -math.inf
+    several, single = 0, 0
+    for time, rows in sorted(frames.items()):
+        known = copy.copy(noise)
+        rows.sort(key=lambda row: row[0])
+        expectations = []
+        for who, position in rows:
+            if who in tracks:
+                seconds = (time - tracks[who].last()) * tick
+                if len(tracks[who].rows) >= 3 and seconds <= 1:
+                    expected, margin = tracks[who].expected(seconds, known)
+                    expectations.append((who, position, (expected.mean[0], 1.5 * seconds**2 + margin)))
+        exchanged = exchanges(expectations)
+        for who, position in rows:
+            last_rows[who] = time
+            if who not in tracks:
+                tracks[who] = Track(time, position)
+                continue
+            if who in exchanged:
+                tracks[who] = Track(time, position)
+                misfits.append([time, who, exchanged[who], BEGUN_ANEW])
+            else:
+                misfit = tracks[who].push(time, position, tick, known, noise)
+                if misfit:
+                    misfits.append([misfit[0], who, *misfit[1:]])
+            tracks[who].forget_before(time, step)
+        tracks = {who: track for who, track in tracks.items() if (time - last_rows[who]) * tick <= 2}
+        if sum(time - last_rows[who] < step for who in tracks) > 1:
+            several, single = several + (len(rows) > 1), single + (len(rows) == 1)
+        usual = 0.0 if 4 * several >= single else step
+        apart_by = usual if interval is None else interval
+        late = time - due + 0.005 * step
+        if apart_by != 0 and late < 0:
+            continue
+        if apart_by > 0 and math.isfinite(late):
+            due += apart_by * (math.floor(late / apart_by) + 1)
+        else:
+            due = time + (step if interval is None else interval)
+        window = []
+        for who, track in sorted(tracks.items()):
+            age = time - track.last()
+            oldest = max(track.interval(), step) if max_age is None else max_age
+            if age == 0 or age < oldest or last_rows[who] == time and age <= oldest:
+                seen = track.observed(time, step, tick, noise)
+                if seen:
+                    places, quality = seen
+                    window.append([who, *(np.arange(1, 9) @ np.array(places)), *quality])
+        if window:
+            windows.append([time, window])
+    best = int(np.argmax(noise.evidence - UNUSUAL))
+    return windows, misfits, float(NOISE[best])
+
+
+def film(seed, rate, ticks, step, *, noise, wrong, frames, seconds=14, max_age=None, interval=None, people=4):
+    """Pedestrians who turn, stop, run, vanish, jump and exchange their numbers; `frames` gives those of a pedestrian."""
+    rng = np.random.default_rng(seed)
+    rows = {}
+    for who in range(1, people + 1):
+        place, speed = rng.uniform(-6, 6, 2), rng.uniform(0.2, 2.2)
+        heading, before, begin = rng.uniform(0, 6.3), None, rng.uniform(0, 3)
+        gone = rng.uniform(4, 10, 2) if who % 2 else [99, 99]
+        gone = gone[0], gone[0] + rng.uniform(0.5, 3)
+        for frame in frames(rng, who, rate, seconds):
+            now = frame / rate
+            if now < begin:
+                continue
+            if before is not None:
+                if rng.random() < 0.5 * (now - before):
+                    heading += rng.normal(0, 1.2)
+                    speed = rng.choice([0, rng.uniform(0.5, 2), rng.uniform(2.5, 5)], p=[0.2, 0.6, 0.2])
+                heading += 0.4 * math.sin(now) * (now - before)
+                place = place + speed * (now - before) * np.array([math.cos(heading), math.sin(heading)])
+                if rng.random() < 0.08 * (now - before):
+                    place = place + rng.normal(0, 2.5, 2)
+            before = now
+            if gone[0] < now < gone[1] or rng.random() < 0.06:
+                continue
+            seen = place + rng.normal(0, noise, 2)
+            if rng.random() < wrong:
+                seen = seen + rng.normal(0, 1.6, 2)
+            rows[frame, who] = [round(float(c), 3) for c in seen]
+    # Two exchange their numbers, twice.
+    swap = {1: 2, 2: 1}
+    at = [rng.uniform(0.3, 0.5) * seconds * rate, rng.uniform(0.6, 0.8) * seconds * rate]
+    rows = {(f, swap.get(w, w) if at[0] <= f < at[1] else w): p for (f, w), p in rows.items()}
+    return {
+        "frame_time": 1 / rate,
+        "ticks": ticks,
+        "step": step,
+        "max_age": max_age,
+        "interval": interval,
+        "rows": [[f, w, *p] for (f, w), p in sorted(rows.items())],
+    }
+
+
+def common(rng, who, rate, seconds):
+    return range(int(seconds * rate))
+
+
+def own_clocks(rng, who, rate, seconds):
+    """Milliseconds: every 400 ms or so, some 1 ms early or late, and for a moment every millisecond."""
+    frames = [37 * who + (390 + 10 * who) * k + int(rng.integers(-1, 2)) for k in range(int(seconds / 0.41))]
+    return frames + [frames[-1] + 1 + k for k in range(12)]
+
+
+def rounded(value):
+    if isinstance(value, (list, tuple)):
+        return [rounded(part) for part in value]
+    return round(float(value), 9) if isinstance(value, float) else int(value)
+
+
+films = [
+    film(1, 7, 5, 14, noise=0.0, wrong=0.03, frames=common, max_age=0.9),
+    film(2, 10, 1, 4, noise=0.08, wrong=0.03, frames=common, seconds=18),
+    film(3, 1000, 1, 400, noise=0.01, wrong=0.03, frames=own_clocks, seconds=25, people=5),
+    film(4, 2.5, 1, 1, noise=0.02, wrong=0.06, frames=common, seconds=40, max_age=1.3, interval=1.0),
+    film(5, 24, 5, 48, noise=0.02, wrong=0.03, frames=common, seconds=9, interval=0.15),
+]
+for one in films:
+    windows, misfits, noise = observe(one)
+    one["windows"] = [[int(time), rounded(window)] for time, window in windows]
+    one["misfits"], one["noise"] = rounded(misfits), noise
+    print(len(one["rows"]), len(windows), noise, [sum(m[3] == k for m in misfits) for k in (0, 1)])
+with open("observed_tracks.json", "w") as file:
+    json.dump(films, file, separators=(",", ":"))
+    file.write("\n")
