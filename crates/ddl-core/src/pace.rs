@@ -46,10 +46,19 @@ mod tests {
 
     #[test]
     fn paces_by_hand() {
-        for (step, pace) in [(0.05, Pace::Standing), (0.1, Pace::Slow), (0.5, Pace::Walking)] {
+        let cases = [
+            (0.149, Pace::Standing),
+            (0.151, Pace::Slow),
+            (0.699, Pace::Slow),
+            (0.701, Pace::Walking),
+        ];
+        for (speed, pace) in cases {
+            // Half a second for each of two steps.
+            let step = 0.5 * speed;
             let observed = [[0.0, 1.0], [0.0, 1.0 + step], [step, 1.0 + step]];
-            assert_eq!(Pace::of(&observed, 0.4, 0.1), pace);
-            assert_eq!(Pace::of(&observed, 0.4, 0.5), Pace::Walking);
+            assert!((mean_speed(&observed, 0.5) - speed).abs() < 1e-12);
+            assert_eq!(Pace::of(&observed, 0.5, 0.299), pace);
+            assert_eq!(Pace::of(&observed, 0.5, 0.301), Pace::Walking);
         }
         assert_eq!(Pace::of(&[[3.0, 1.0]], 0.4, 0.0), Pace::Standing);
     }

@@ -174,12 +174,13 @@ mod tests {
         Arc::new(columns.try_into().unwrap())
     }
 
-    /// The numbers come from a Python program, written from the formula at the head of this file.
+    /// The numbers come from a Python program, written from the formula at the head of this file. The first score is on
+    /// the edge of its region, and so within.
     #[test]
     fn five_frames_as_computed_elsewhere() {
         let mut tracked = TrackedQuantiles::new(table(&[(0.5, 1.0), (0.9, 4.0)]));
         let frames: [(f64, &[f64], [f64; 2]); 5] = [
-            (1.0, &[0.5, 2.0, 5.0], [1.017_471_377_864, 4.098_180_408_623]),
+            (1.0, &[1.0, 2.0, 5.0], [1.017_471_377_864, 4.098_180_408_623]),
             (0.5, &[6.0], [1.032_848_488_542, 4.210_338_601_735]),
             (1.0, &[0.1; 16], [0.943_952_443_339, 4.135_230_507_658]),
             (1.0, &[9.0, 9.0, 0.2, 1.5], [0.972_700_075_075, 4.338_562_501_638]),

@@ -56,7 +56,12 @@ fn moment(at: i64, frame: i64, draws: &mut Draws, regions: &Arc<RegionTable>) ->
             let steps = (1..=HORIZON).map(|t| STEP as f64 * t as f64);
             paths.extend(steps.map(|f| [0, 1].map(|axis| last[axis] + (way[axis] + off[axis]) * f)));
         }
-        weights.extend([[0.7, 0.2, 0.1], [0.45, 0.55, 0.0], [0.15, 0.25, 0.6]][pace]);
+        let slow = if at % 5 == 0 {
+            [0.0, 0.3, 0.7]
+        } else {
+            [0.45, 0.55, 0.0]
+        };
+        weights.extend([[0.7, 0.2, 0.1], slow, [0.15, 0.25, 0.6]][pace]);
         let size = [9.0, 0.4, if at < 120 { 0.0004 } else { 1.2 }][pace];
         scales.extend((0..HORIZON).map(|t| size * (1.0 + 0.1 * t as f64)));
         let rows = (at - 5).rem_euclid(40);
@@ -89,7 +94,8 @@ fn a_place_is_learned_as_by_another_program() {
     let (mut draws, mut frame, regions) = (Draws(7), 100, table());
     let mut adaptive = AdaptiveRegions::default();
     for (at, expected) in (0..).zip(expected) {
-        frame += [1, 2, 3, 3, 3, 3, 4, 5][(8.0 * draws.draw()) as usize];
+        let later = [1, 2, 3, 3, 3, 3, 4, 5][(8.0 * draws.draw()) as usize];
+        frame += if at == 180 { 0 } else { later };
         frame += [(60, 80), (130, -400)]
             .iter()
             .find(|(when, _)| *when == at)

@@ -1,6 +1,6 @@
 //! The representative hypothesis: examples computed by hand, and properties.
 
-use ddl_core::{Forecast, HORIZON, Position, medoid};
+use ddl_core::{Forecast, HORIZON, Position, average_displacement, medoid};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -42,6 +42,9 @@ fn of_four_straight_walks() {
     let single = forecast.single();
     assert_eq!((single.hypotheses(), single.weight(0, 0)), (1, 1.0));
     assert_eq!(single.hypothesis(0, 0), forecast.hypothesis(0, 1));
+    // 5 m and 2.5 m.
+    let apart = average_displacement(&[[3.0, 4.0], [1.0, 0.0]], &[[0.0, 0.0], [-0.5, 2.0]]);
+    assert!((apart - 3.75).abs() < 1e-12);
 }
 
 #[test]
@@ -55,6 +58,10 @@ fn ties_go_to_the_heaviest_and_then_to_the_first() {
     assert_eq!(medoid(&weights, apart), 3);
     let reversed = |k: usize, j: usize| (places[7 - k] - places[7 - j]).abs();
     assert_eq!(medoid(&weights, reversed), 3);
+    // Both sides of 1.2 and 2.6 weigh a half; by rounding the sum of 1.2 is less.
+    let places = [0.3, 0.6, 1.1, 1.2, 2.6_f64];
+    let apart = |k: usize, j: usize| (places[k] - places[j]).abs();
+    assert_eq!(medoid(&[0.1, 0.2, 0.1, 0.1, 0.5], apart), 4);
     // Two at one position, of which the second has the greater weight.
     let places = [0.0, 0.0, 5.0_f64];
     let apart = |k: usize, j: usize| (places[k] - places[j]).abs();

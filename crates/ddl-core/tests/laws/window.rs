@@ -1,6 +1,9 @@
 //! Windows: what is refused, and what stays when pedestrians or positions change.
 
-use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, Position, RememberedTrack, Window, WindowError};
+use ddl_core::{
+    FRAME_LIMIT, OBSERVED, ObservationQuality, PedestrianId, Position, RememberedTrack, Window, WindowError, between,
+    bounds, distance, is_frame, is_frame_step,
+};
 
 fn ids(range: std::ops::Range<i64>) -> Vec<PedestrianId> {
     range.map(PedestrianId).collect()
@@ -154,12 +157,28 @@ fn what_was_measured_has_no_quality() {
     );
     assert_eq!(window.clone().with_qualities(vec![measured; 2]), window);
     let partial = ObservationQuality {
-        unseen: 3,
+        unseen: 1,
         age: 0.1,
         deviation: 0.3,
         velocity_deviation: 0.1,
     };
     assert!(!partial.is_whole() && (partial.deviation_after(4.0) - 0.5).abs() < 1e-12);
+    // 0.48 m of 4.8 s.
+    assert!((partial.uncertainty() - (0.09_f64 + 0.2304).sqrt()).abs() < 1e-12);
     let window = window.with_qualities(vec![measured, partial]);
     assert_eq!(window.filter_pedestrians(|i| i == 1).unwrap().quality(0), partial);
+}
+
+#[test]
+fn places_and_frames_by_hand() {
+    let places = [[1.0, -4.0], [-2.0, 7.0], [3.0, 0.0]];
+    assert_eq!((bounds(places), bounds([])), (Some([[-2.0, -4.0], [3.0, 7.0]]), None));
+    let off = distance(between([1.0, 2.0], [3.0, -2.0], 0.25), [1.5, 1.0]);
+    assert!(off < 1e-12 && (distance([1.0, 2.0], [4.0, -2.0]) - 5.0).abs() < 1e-12);
+    let limits = [1 - FRAME_LIMIT, FRAME_LIMIT - 1, -FRAME_LIMIT, FRAME_LIMIT, i64::MIN];
+    assert_eq!(limits.map(is_frame), [true, true, false, false, false]);
+    assert_eq!(
+        [1, 1 << 31, 0, (1 << 31) + 1].map(is_frame_step),
+        [true, true, false, false]
+    );
 }

@@ -25,7 +25,8 @@ def stream():
     """Frame, and of each pedestrian: id, pace, last two positions, hypotheses, weights, scales, age and unseen."""
     draw, frame = Draws(), 100
     for at in range(240):
-        frame += [1, 2, 3, 3, 3, 3, 4, 5][int(8 * draw())]
+        later = [1, 2, 3, 3, 3, 3, 4, 5][int(8 * draw())]
+        frame += later if at != 180 else 0
         if at in (60, 130):
             frame += 80 if at == 60 else -400
         people = []
@@ -38,7 +39,7 @@ def stream():
             way = [0.05 + 0.02 * i, 0.2 - 0.03 * i]
             place = lambda f: [3 * i + way[0] * f + 0.2 * math.sin(f), way[1] * f + 0.3 * math.cos(0.7 * f + i)]
             last, before = place(frame), place(frame - STEP)
-            weights = [[0.7, 0.2, 0.1], [0.45, 0.55, 0.0], [0.15, 0.25, 0.6]][pace]
+            weights = [[0.7, 0.2, 0.1], [0.45, 0.55, 0.0] if at % 5 else [0.0, 0.3, 0.7], [0.15, 0.25, 0.6]][pace]
             size = [9.0, 0.4, 0.0004 if at < 120 else 1.2][pace]
             offs = [[0.01 * u[1], 0.02 * u[2]], [-0.1 - 0.05 * u[3], 0.07], [0.08, 0.1 * u[4]]]
             paths = [
