@@ -187,139 +187,26 @@ impl Pending {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-    use std::sync::Arc;
-
-    use proptest::{collection::vec, prelude::*};
-
     use super::*;
     use crate::forecast::Spread;
-    use crate::quality::ObservationQuality;
-
-    /// The positions of all pedestrians, frame by frame.
-    type Tracks = Vec<Vec<Position>>;
-
-    const PEOPLE: usize = 4;
-
-    fn tracks() -> impl Strategy<Value = Tracks> {
-        let step = vec([-0.8..0.8f64, -0.8..0.8f64], PEOPLE);
-        vec(step, 40..60).prop_map(|steps| {
-            let mut positions = vec![[0.0; 2]; PEOPLE];
-            let moved = steps.into_iter().map(|steps| {
-                for (position, step) in positions.iter_mut().zip(steps) {
-                    *position = [position[0] + step[0], position[1] + step[1]];
-                }
-                positions.clone()
-            });
-            moved.collect()
-        })
-    }
-
-    /// Forecasts of two hypotheses, standing still and walking on, of pedestrians in this order, up to each frame.
-    fn forecasts(tracks: &Tracks, order: [usize; PEOPLE]) -> Vec<(Window, Forecast)> {
-        let scores: Vec<[f64; HORIZON]> = (1..100).map(|n| [f64::from(n) / 30.0; HORIZON]).collect();
-        let table = Arc::new(RegionTable::of(&[&scores; 3], &[0.3, 0.5, 0.9]).unwrap());
-        let until = |last: usize| {
-            // The second pedestrian is away for a while.
-            let here = |i: &&usize| **i != 1 || !(20..30).contains(&last);
-            let people: Vec<usize> = order.iter().filter(here).copied().collect();
-            let observed = |&i: &usize| (last - 7..=last).map(|t| tracks[t][i]).collect();
-            let window = Window::new(
-                "yard",
-                last as i64 - 7,
-                1,
-                people.iter().map(|&i| PedestrianId(i as i64)).collect(),
-                people.iter().map(observed).collect(),
-            );
-            let window = window.unwrap();
-            let mut walks = Vec::new();
-            for i in 0..window.len() {
-                let [.., before, at] = window.observed(i) else {
-                    unreachable!("8 positions")
-                };
-                let on = |t: usize| [0, 1].map(|a| at[a] + t as f64 * (at[a] - before[a]));
-                walks.extend([*at; HORIZON]);
-                walks.extend((1..=HORIZON).map(on));
-            }
-            let weights = [0.6, 0.4].repeat(window.len());
-            let forecast = Forecast::new(window.len(), 2, walks, weights, None).unwrap();
-            let paces = (0..window.len()).map(|i| Pace::of(window.observed(i), 0.4, 0.0));
-            let spread = Spread {
-                scales: vec![0.7; HORIZON * window.len()],
-                paces: paces.collect(),
-                regions: Arc::clone(&table),
-            };
-            let forecast = forecast.with_spread(spread).unwrap();
-            (window, forecast)
-        };
-        (7..tracks.len()).map(until).collect()
-    }
-
-    fn adapted(regions: &mut AdaptiveRegions, stream: &[(Window, Forecast)]) -> Vec<(RegionTable, TrackedPowers)> {
-        let adapt = |(window, forecast): &(Window, Forecast)| {
-            let adapted = regions.adapt(window, forecast.clone());
-            (adapted.regions().unwrap().clone(), regions.powers.clone())
-        };
-        stream.iter().map(adapt).collect()
-    }
-
-    const ORDER: [usize; PEOPLE] = [0, 1, 2, 3];
-
-    proptest! {
-        #[test]
-        fn the_order_of_pedestrians_does_not_matter(tracks in tracks(), order in Just(ORDER).prop_shuffle()) {
-            let one = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, ORDER));
-            let other = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, order));
-            prop_assert_eq!(one, other);
-        }
-    }
-
-    /// The same tracks where pedestrian 2 is another person from frame 25 on, with its old id or a new one.
-    #[test]
-    fn an_id_of_another_person_is_as_a_new_one() {
-        let [old, new] = [2, 9].map(|id| {
-            let tracks = (0..60).map(|t: i32| {
-                let mut now = vec![[0.3 * f64::from(t), 1.0]; PEOPLE];
-                now[2] = [if t < 25 { 0.0 } else { 50.0 }, 0.5 * f64::from(t)];
-                now
-            });
-            let stream = forecasts(&tracks.collect(), ORDER)
-                .into_iter()
-                .map(|(window, forecast)| {
-                    let last = window.frames()[OBSERVED - 1];
-                    let mut qualities = vec![ObservationQuality::default(); window.len()];
-                    let mut ids = window.pedestrians().to_vec();
-                    let i = ids.iter().position(|id| id.0 == 2).unwrap();
-                    let mut positions: Vec<_> = (0..window.len()).map(|i| window.observed(i).to_vec()).collect();
-                    if last >= 25 {
-                        qualities[i].unseen = (OBSERVED as i64 - 1 - (last - 25)).max(0) as usize;
-                        positions[i].iter_mut().for_each(|position| position[0] = 50.0);
-                        ids[i] = PedestrianId(id);
-                    }
-                    let window = Window::new("yard", last - 7, 1, ids, positions).unwrap();
-                    (window.with_qualities(qualities), forecast)
-                });
-            adapted(&mut AdaptiveRegions::default(), &stream.collect::<Vec<_>>())
-        });
-        assert_eq!(old, new);
-    }
 
     #[test]
-    fn the_first_frames_have_the_table_as_it_is_and_forecasts_without_regions_pass() {
-        let tracks = (0..30).map(|t| vec![[0.3 * f64::from(t), 1.0]; PEOPLE]).collect();
-        let stream = forecasts(&tracks, ORDER);
+    fn forecasts_without_regions_pass_the_first_has_its_table_and_few_are_pending() {
+        let bare = Forecast::with_equal_weights(1, 1, vec![[1.0, 2.0]; HORIZON]).unwrap();
+        let regions = RegionTable::of(&[&[[0.5; HORIZON]; 9]; 3], &[0.5]).unwrap().into();
+        let (scales, paces) = (vec![0.7; HORIZON], vec![Pace::Slow]);
+        let forecast = bare.clone().with_spread(Spread { scales, paces, regions }).unwrap();
+        let window = |frame| Window::new("yard", frame, 2, vec![PedestrianId(1)], vec![vec![[1.0, 2.0]; 8]]).unwrap();
         let mut regions = AdaptiveRegions::default();
-        let bare = Forecast::with_equal_weights(PEOPLE, 1, vec![[0.0; 2]; PEOPLE * HORIZON]).unwrap();
-        assert_eq!(regions.adapt(&stream[0].0, bare.clone()), bare);
+        assert_eq!(regions.adapt(&window(0), bare.clone()), bare);
         assert_eq!(regions.table(), None);
-        let (window, forecast) = &stream[0];
-        assert_eq!(&regions.adapt(window, forecast.clone()), forecast);
-        // An earlier time is a restart, and so not an outcome.
-        let table = regions.table().cloned();
-        let _ = regions.adapt(window, forecast.clone());
-        assert_eq!(regions.table().cloned(), table);
-        let _ = regions.adapt(&stream[1].0, stream[1].1.clone());
-        assert_ne!(regions.table().cloned(), table);
-        // After 4.8 s a forecast is no longer pending.
-        assert!(regions.pending.len() <= HORIZON);
+        assert_eq!(regions.adapt(&window(0), forecast.clone()), forecast);
+        for frame in 1..60 {
+            let adapted = regions.adapt(&window(frame), forecast.clone());
+            assert_eq!(adapted == forecast, frame == 1, "{frame}");
+            assert!(regions.pending.len() <= 2 * HORIZON, "a forecast is pending for 4.8 s");
+        }
+        regions.clear();
+        assert!(regions.pending.is_empty() && regions.table().is_some());
     }
 }

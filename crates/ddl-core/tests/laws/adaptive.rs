@@ -82,6 +82,16 @@ fn moment(at: i64, frame: i64, draws: &mut Draws, regions: &Arc<RegionTable>) ->
     (window.with_qualities(qualities), forecast)
 }
 
+/// The same pedestrians in the opposite order.
+fn turned(window: &Window, forecast: &Forecast) -> (Window, Forecast) {
+    let order: Vec<usize> = (0..window.len()).rev().collect();
+    let (ids, start) = (order.iter().map(|&i| window.pedestrians()[i]), window.start_frame());
+    let tracks = order.iter().map(|&i| window.observed(i).to_vec()).collect();
+    let turned = Window::new("yard", start, STEP, ids.collect(), tracks).unwrap();
+    let qualities = order.iter().map(|&i| window.quality(i)).collect();
+    (turned.with_qualities(qualities), forecast.of_pedestrians(&order))
+}
+
 /// The sum of numbers, the first once, the second twice and so on.
 fn sum(numbers: impl Iterator<Item = f64>) -> f64 {
     (1..).zip(numbers).map(|(n, number)| f64::from(n) * number).sum()
@@ -92,16 +102,20 @@ fn sum(numbers: impl Iterator<Item = f64>) -> f64 {
 fn a_place_is_learned_as_by_another_program() {
     let expected: Vec<[f64; 6]> = serde_json::from_str(include_str!("reference/adaptive.json")).unwrap();
     let (mut draws, mut frame, regions) = (Draws(7), 100, table());
-    let mut adaptive = AdaptiveRegions::default();
+    let [mut adaptive, mut other] = [AdaptiveRegions::default(), AdaptiveRegions::default()];
     for (at, expected) in (0..).zip(expected) {
         let later = [1, 2, 3, 3, 3, 3, 4, 5][(8.0 * draws.draw()) as usize];
         frame += if at == 180 { 0 } else { later };
-        frame += [(60, 80), (130, -400)]
-            .iter()
-            .find(|(when, _)| *when == at)
-            .map_or(0, |(_, by)| *by);
+        frame += i64::from(at == 60) * 80 - i64::from(at == 130) * 400;
         let (window, forecast) = moment(at, frame, &mut draws, &regions);
+        let (turned, backwards) = turned(&window, &forecast);
         let adapted = adaptive.adapt(&window, forecast);
+        let order: Vec<usize> = (0..window.len()).rev().collect();
+        assert_eq!(
+            other.adapt(&turned, backwards),
+            adapted.of_pedestrians(&order),
+            "the order does not matter"
+        );
         let hypotheses = || (0..window.len()).flat_map(|i| (0..3).map(move |k| (i, k)));
         let weights = sum(hypotheses().map(|(i, k)| adapted.weight(i, k)));
         let steps = hypotheses().flat_map(|(i, k)| (0..HORIZON).map(move |t| (i, k, t)));

@@ -20,6 +20,7 @@ fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
         (1.0, 5, 2),
         (7.0, 5, 14),
         (9.0, 5, 18),
+        (23.976, 22, 211),
     ] {
         let clock = Clock::with_frame_time(1.0 / rate).unwrap();
         assert_eq!((clock.tick(1), clock.frame_step()), (Ok(ticks), step), "{rate}");
@@ -77,7 +78,10 @@ fn a_recording_is_counted_in_ticks_unless_its_rows_are_too_far_apart() {
     let recording = pedestrian((0..20).map(|t| 3 * t));
     let at = |seconds: f64| recording.on_clock(Clock::with_frame_time(seconds).unwrap());
     let seven = at(1.0 / 7.0).unwrap();
-    assert_eq!((seven.frames()[19], seven.frame_step()), (57 * 5, 14));
+    assert_eq!(
+        (seven.frames()[19], seven.observations()[19].frame, seven.frame_step()),
+        (285, 285, 14)
+    );
     let positions = |recording: &Recording| {
         recording
             .observations()
@@ -86,7 +90,8 @@ fn a_recording_is_counted_in_ticks_unless_its_rows_are_too_far_apart() {
             .collect::<Vec<_>>()
     };
     assert_eq!(positions(&seven), positions(&recording));
-    assert!(at(0.4).is_ok());
+    assert!(at(0.4).is_ok() && at(0.000_34).is_ok());
+    assert!(matches!(at(0.000_33), Err(ClockError::TooFast { .. })));
     assert!(matches!(at(0.41), Err(ClockError::TooSlow { apart }) if apart > 1.2));
     let far = pedestrian((1 << 52)..(1 << 52) + 20);
     let refused = far.on_clock(Clock::with_frame_time(1.0 / 24.0).unwrap());
@@ -202,4 +207,6 @@ fn a_tick_has_a_time() {
     );
     let stamps = Clock::with_stamps(TimeUnit::Dates);
     assert_eq!(stamps.microseconds(1_700_000_000_123_456), 1_700_000_000_123_456);
+    let nearest = [seven.number(29), stamps.number(1_700_000_000_123_456)].map(ddl_data::FrameNumber::nearest);
+    assert_eq!(nearest, [6, 1_700_000_000]);
 }

@@ -114,27 +114,58 @@ proptest! {
 fn splines_and_lists_of_tracks_are_read() {
     let edinburgh =
         "Properties.R1=[ 3 1 ];\nTRACK.R1=[[100 200 5];[110 200 6];[110 200 6]];\nTRACK.R2=[[ 10 20 7 ]];\n";
-    let recording = read("tracks.01Jul.txt", edinburgh).unwrap();
-    let rows = recording.observations().iter();
-    let rows: Vec<_> = rows.map(|seen| (seen.frame, seen.pedestrian.0)).collect();
-    assert_eq!(rows, [(5, 1), (6, 1), (7, 2)]);
-    assert!((recording.observations()[1].position[0] - 2.717).abs() < 1e-9);
-    assert_eq!(recording.stated_frame_time(), Some(1.0 / 9.0));
+    let rows = |name: &str, text: &str| -> (Recording, Vec<_>) {
+        let recording = read(name, text).unwrap();
+        let row = |seen: &Observation| (seen.pedestrian.0, seen.frame, seen.position);
+        let rows = recording.observations().iter().map(row).collect();
+        (recording, rows)
+    };
+    let (recording, metres) = rows("tracks.01Jul.txt", edinburgh);
+    let (_, pixels) = rows("tracks.01Jul.txt homography", edinburgh);
+    assert_eq!(
+        pixels,
+        [(1, 5, [100.0, 200.0]), (1, 6, [110.0, 200.0]), (2, 7, [10.0, 20.0])]
+    );
+    for (metres, pixels) in metres.iter().zip(pixels) {
+        assert!((0..2).all(|axis| (metres.2[axis] - 0.0247 * pixels.2[axis]).abs() < 1e-12));
+    }
+    assert_eq!((metres.len(), recording.stated_frame_time()), (3, Some(1.0 / 9.0)));
     let notes = recording.notes().join("; ");
     assert!(
         notes.contains("24.7 mm") && notes.contains("1 at the same frame"),
         "{notes}"
     );
 
-    let vsp = "1 - the number of splines\n3 - Num of control points\n-10.0 40.0 5 0.5 - (2D point, m_id)\n\
-               10 40 25 0\n10 60 45 0\n";
-    let recording = read("annotation.vsp", vsp).unwrap();
-    let rows = recording.observations().iter();
-    let places: Vec<_> = rows.clone().map(|seen| seen.position).collect();
-    assert!(rows.map(|seen| seen.frame).eq([10, 20, 30, 40]));
-    assert_eq!(places, [[-5.0, 40.0], [5.0, 40.0], [10.0, 45.0], [10.0, 55.0]]);
+    // A spline that begins at a frame that counts, and one with parts of 500 and of 501 frames.
+    let vsp = "3 - the number of splines\n3 - Num of control points\n-10.0 40.0 5 0.5 - (2D point, m_id)\n\
+               10 40 25 0\n10 60 45 0\n2 - Num of control points\n7 1 -20 0\n3 9 -10 0\n\
+               4 - Num of control points\n0 0 1007 0\n50 100 1507 0\n8 8 2008 0\n6 9 2010 0\n";
+    let (recording, mut rows) = rows("annotation.vsp", vsp);
     assert_eq!(recording.stated_frame_time(), Some(1.0 / 25.0));
     assert!(recording.notes()[0].contains("a forecast knows where the next one lies"));
+    assert!(
+        recording
+            .notes()
+            .iter()
+            .any(|note| note.contains("left out: 1 splines"))
+    );
+    let long = rows.split_off(6);
+    let first = [
+        (1, 10, [-5.0, 40.0]),
+        (1, 20, [5.0, 40.0]),
+        (1, 30, [10.0, 45.0]),
+        (1, 40, [10.0, 55.0]),
+    ];
+    assert_eq!(
+        rows,
+        [&[(2, -20, [7.0, 1.0]), (2, -10, [3.0, 9.0])], &first[..]].concat()
+    );
+    for (k, (who, frame, [x, y])) in (0..50).zip(&long) {
+        assert_eq!((*who, *frame), (3, 1010 + 10 * k));
+        let way = (10 * k + 3) as f64 / 500.0;
+        assert!((x - 50.0 * way).abs() < 1e-9 && (y - 100.0 * way).abs() < 1e-9);
+    }
+    assert_eq!((long.len(), long[50]), (51, (3, 2010, [6.0, 9.0])));
 }
 
 #[test]

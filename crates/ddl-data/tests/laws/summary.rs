@@ -1,6 +1,6 @@
 //! Summaries of recordings and their plausibility checks.
 
-use ddl_data::{Format, Observation, PedestrianId, PlausibilityWarning, Recording, parse_recording};
+use ddl_data::{Format, Observation, PedestrianId, PlausibilityWarning, Position, Recording, parse_recording};
 
 /// A pedestrian that walks along x at a speed in metres per frame, for 100 frames.
 fn walk(metres_a_frame: f64) -> Vec<Observation> {
@@ -147,4 +147,127 @@ fn frames_that_begin_again_are_counted() {
             assert_eq!(recording.summary().restarts, count, "{text}");
         }
     }
+}
+
+/// A place so far (m) along a line that is not an axis.
+fn on_way(metres: f64) -> Position {
+    [0.6 * metres, 5.0 + 0.8 * metres]
+}
+
+/// Tracks of so many rows, one every 0.2 s.
+fn tracks(rows: i64, places: &[&dyn Fn(f64) -> Position]) -> Recording {
+    let of_track = |(id, place): (i64, &&dyn Fn(f64) -> Position)| -> Vec<Observation> {
+        let row = |t: i64| Observation::new(t, PedestrianId(id), place(t as f64));
+        (0..rows).map(row).collect()
+    };
+    Recording::new("yard", 2, (1..).zip(places).flat_map(of_track).collect()).unwrap()
+}
+
+/// Each limit, from both sides; 59 steps in 61 rows, which are 12 s.
+#[test]
+fn doubts_begin_at_their_limits() {
+    let check = |expected: &str, rows: i64, places: &[&dyn Fn(f64) -> Position]| {
+        let found = tracks(rows, places)
+            .speed_warning()
+            .map(|warning| format!("{warning:?}"));
+        let found = found.unwrap_or_default();
+        assert_eq!(found.split(' ').next(), Some(expected), "{found}");
+    };
+    // Steady walks, in m/s: 1.92 m are no walk, 2.16 m are.
+    for (rows, speed, expected) in [
+        (61, 2.55, ""),
+        (61, 2.65, "Fast"),
+        (61, 0.59, "Slow"),
+        (61, 0.61, ""),
+        (61, 0.16, ""),
+        (61, 0.18, "Slow"),
+        (61, 0.095, "Crawling"),
+        (61, 0.105, ""),
+        (61, 0.0017, "Crawling"),
+        (61, 0.0016, "Still"),
+        (21, 0.004, ""),
+        (22, 0.004, "Still"),
+        (40, 0.095, ""),
+        (41, 0.095, "Crawling"),
+    ] {
+        check(expected, rows, &[&|t| on_way(0.2 * speed * t)]);
+    }
+    // 1.5 m/s for a few rows, two of whose steps are half as fast, and 0.3 m/s otherwise: nine in ten are 53 steps.
+    for (quick, expected) in [(4.0, "Slow"), (6.0, "")] {
+        check(
+            expected,
+            61,
+            &[&|t| on_way(0.06 * t + 0.24 * (t - 20.0).clamp(0.0, quick))],
+        );
+    }
+    // 0.24 m/s now and then is not straight on.
+    check(
+        "",
+        61,
+        &[&|t| on_way(0.048 * ((t / 9.0).floor() * 3.0 + (t % 9.0).min(3.0)))],
+    );
+    // With 0.4 m of the step: 11.75 and 12.25 m/s.
+    for (jump, expected) in [(4.3, ""), (4.5, "Jump")] {
+        check(
+            expected,
+            61,
+            &[&|t| on_way(0.2 * t + if t < 30.0 { 0.0 } else { jump })],
+        );
+    }
+    // Six rows are more than a twentieth of 118 steps, if both have several.
+    for (one, other, expected) in [(3.0, 3.0, "Placeholders"), (3.0, 2.0, "Still"), (6.0, 1.0, "Still")] {
+        let stand = |place: Position, rows: f64| move |t| if t >= 9.0 && t < 9.0 + rows { [0.0; 2] } else { place };
+        check(expected, 61, &[&stand([0.5, 0.7], one), &stand([0.9, 0.3], other)]);
+    }
+    // Two who stand and one who walks so far to the end of the area, along y.
+    for (side, walk, expected) in [
+        (1.45, 0.35, "Narrow"),
+        (1.45, 0.25, "Crawling"),
+        (1.55, 0.35, "Crawling"),
+    ] {
+        let (stand, go) = (|_| [0.1, 0.0], |t| [0.2, side - walk + walk / 60.0 * t]);
+        check(expected, 61, &[&stand, &|_| [0.3, 0.5], &go]);
+        check("Crawling", 61, &[&stand, &go]);
+    }
+    // Of so many rows all but some repeat the one before: a quarter, an eighth; for 1.2 and 1.4 s; 0.19 and 0.21 m.
+    for (period, moves, metres, expected) in [
+        (4.0, 3.0, 0.3, "Repeated"),
+        (8.0, 7.0, 0.3, ""),
+        (6.0, 1.0, 0.3, "Repeated"),
+        (7.0, 1.0, 0.3, ""),
+        (4.0, 3.0, 0.19, ""),
+        (4.0, 3.0, 0.21, "Repeated"),
+    ] {
+        let count = |t: f64| (t / period).floor() * moves + (t % period).min(moves - 1.0);
+        check(expected, 61, &[&|t| on_way(metres * count(t))]);
+    }
+    // A walk of 6 s that then keeps its place for 4 or 3.8 s.
+    for (speed, rows, frozen) in [(0.31, 51, 1), (0.31, 50, 0), (0.29, 51, 0)] {
+        let summary = tracks(rows, &[&|t: f64| on_way(0.2 * speed * t.min(30.0))]).summary();
+        assert_eq!(summary.frozen, frozen, "{speed} {rows}");
+    }
+}
+
+/// At 25 frames a second, a row every 5 frames: of 15 differences five are 5, seven are one more or less. Of 20 and 5
+/// rows 17 are there.
+#[test]
+fn rows_are_summed_up_as_by_hand() {
+    let frames = [0, 6, 10, 15, 21, 25, 30, 36, 61, 65, 70, 90, 96].map(|frame| (frame, 1));
+    let rows = frames.into_iter().chain([5, 10, 15, 24].map(|frame| (frame, 2)));
+    let rows = rows.map(|(frame, id)| Observation::new(frame, PedestrianId(id), [0.05 * frame as f64, -id as f64]));
+    let summary = Recording::new("yard", 10, rows.collect()).unwrap().summary();
+    let found = [
+        summary.seconds,
+        summary.rows_a_second.unwrap(),
+        summary.jitter,
+        summary.unseen,
+    ];
+    let is_near = |(a, b): (f64, f64)| (a - b).abs() < 1e-12;
+    assert!(found.into_iter().zip([3.84, 5.0, 0.04, 0.32]).all(is_near), "{found:?}");
+    let gap = summary.longest_hole.unwrap();
+    assert!(is_near((gap.seconds, 1.0)) && gap.after == 36);
+    assert_eq!(
+        (summary.holes, summary.low, summary.high),
+        (2, [0.0, -2.0], [4.800_000_000_000_001, -1.0])
+    );
 }
