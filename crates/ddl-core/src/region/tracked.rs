@@ -205,27 +205,6 @@ mod tests {
         }
     }
 
-    #[test]
-    #[expect(clippy::float_cmp, reason = "paces that follow another have its bits")]
-    fn a_pace_that_was_seen_enough_learns_from_itself_alone() {
-        let mut tracked = TrackedQuantiles::new(table(&[(0.9, 4.0)]));
-        let mut quantiles_after = |pace: Pace, frames: usize| {
-            for _ in 0..frames {
-                let (table, scores) = (Arc::clone(tracked.table()), vec![(pace, 9.0); 9]);
-                tracked.learn(&[Outcomes { step: 0, table, scores }], 1.0);
-            }
-            Pace::ALL.map(|pace| tracked.table().quantile(pace, 0.9, 0).unwrap())
-        };
-        // Each frame weighs 3.
-        let [standing, slow, walking] = quantiles_after(Pace::Slow, 5);
-        assert!(slow > 4.0 && standing == slow && walking == slow);
-        let [standing, slow, walking] = quantiles_after(Pace::Walking, 5);
-        assert!(standing == walking && walking > slow);
-        let [_, settled, _] = quantiles_after(Pace::Slow, 5);
-        let [standing, slow, walking] = quantiles_after(Pace::Walking, 5);
-        assert!(slow == settled && standing >= walking);
-    }
-
     fn walking(scores: &[f64]) -> Vec<(Pace, f64)> {
         scores.iter().map(|&score| (Pace::Walking, score)).collect()
     }

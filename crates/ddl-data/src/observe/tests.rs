@@ -1,4 +1,4 @@
-//! Observations estimated from the rows of a track.
+//! Observations estimated from the rows of a track; their numbers are those of `tests/laws/observe_reference.rs`.
 
 use ddl_core::{Position, distance};
 use proptest::prelude::*;
@@ -32,47 +32,9 @@ fn noisy(rows: &[(f64, Position)], deviation: f64, seed: u64) -> Vec<(f64, Posit
     moved.collect()
 }
 
-fn bits(position: Position) -> [u64; 2] {
-    position.map(f64::to_bits)
-}
-
 fn farthest(a: &[Position], b: &[Position]) -> f64 {
     let distances = a.iter().zip(b).map(|(a, b)| distance(*a, *b));
     distances.fold(0.0, f64::max)
-}
-
-/// The posterior of a Gaussian process whose velocity is a Wiener process (spectral density 0.02, variance 2 at the
-/// first row, noise 0.02), solved as one system of equations with numpy 2.4. The moment is 0.1 s after the last row,
-/// the first position 0.05 s before the first row. Of eight rows 0.4 s apart the last position has the deviation
-/// 0.01842525, and the velocity 0.07588693; the quality says what is more.
-#[test]
-fn an_estimate_is_the_posterior_of_a_gaussian_process() {
-    let times = [0.35, 0.8, 1.3, 1.7, 2.25, 2.7, 3.0];
-    let x = [0.4, 1.05, 1.7, 2.2, 2.9, 3.4, 3.85];
-    let y = [0.02, 0.01, 0.1, 0.22, 0.35, 0.6, 0.75];
-    let mut rows: Vec<(f64, Position)> = (0..7).map(|row| (times[row], [x[row], y[row]])).collect();
-    let expected = [
-        [0.339_103_04, 0.005_920_05],
-        [0.900_018_33, 0.019_085_18],
-        [1.439_247_79, 0.065_044_14],
-        [1.953_425_81, 0.149_307_58],
-        [2.453_070_23, 0.257_257_86],
-        [2.943_801_59, 0.398_223_53],
-        [3.4, 0.6], // the row at this step
-        [3.961_300_49, 0.797_607_14],
-    ];
-    let Observed { positions, quality } = observed(&rows, 3.1);
-    assert!(farthest(&positions, &expected) < 1e-6, "{positions:?}");
-    let expected = [0.1, 0.013_558_69, 0.046_221_88];
-    let found = [quality.age, quality.deviation, quality.velocity_deviation];
-    assert!(
-        found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6),
-        "{quality:?}"
-    );
-    assert_eq!(quality.unseen, 1);
-    // A row on its step passes unchanged, and so does one 2 ms beside it.
-    rows.push((3.099, [4.0, 0.8]));
-    assert_eq!(bits(observed(&rows, 3.1).positions[7]), bits([4.0, 0.8]));
 }
 
 /// A hundred pedestrians at 10 rows a second: the noise that is measured is the noise that was added.

@@ -1,5 +1,6 @@
-# Writes adaptive.json: what `AdaptiveRegions` learns from a stream of forecasts, with Python 3.11 alone. Written from the
-# words of `src/region.rs` and `src/region/`. `python3 adaptive.py` in this folder. The stream is made as in `adaptive.rs`.
+# Writes adaptive.json: what `AdaptiveRegions` learns from a stream of forecasts, with Python 3.11 alone. Written from
+# the words of `src/region.rs` and `src/region/`. `python3 adaptive.py` in this folder. The stream is made as in
+# `adaptive.rs`.
 import json
 import math
 
@@ -43,7 +44,8 @@ def stream():
             size = [9.0, 0.4, 0.0004 if at < 120 else 1.2][pace]
             offs = [[0.01 * u[1], 0.02 * u[2]], [-0.1 - 0.05 * u[3], 0.07], [0.08, 0.1 * u[4]]]
             paths = [
-                [[last[a] + (way[a] + off[a]) * STEP * t for a in (0, 1)] for t in range(1, HORIZON + 1)] for off in offs
+                [[last[a] + (way[a] + off[a]) * STEP * t for a in (0, 1)] for t in range(1, HORIZON + 1)]
+                for off in offs
             ]
             scales = [size * (1 + 0.1 * t) for t in range(HORIZON)]
             young = 1 + (at - 5) % 40 if i == 5 and (at - 5) % 40 < 6 and at > 40 else 0
@@ -64,7 +66,7 @@ def stream():
 
 class Adaptive:
     def __init__(self):
-        self.shifts = {(p, l, t): 0.0 for p in range(PACES) for l in range(3) for t in range(HORIZON)}
+        self.shifts = {(p, a, t): 0.0 for p in range(PACES) for a in range(3) for t in range(HORIZON)}
         self.sums = {(p, t): 0.0 for p in range(PACES) for t in range(HORIZON)}
         self.log_powers = [0.0] * PACES
         self.pending = []
@@ -75,10 +77,10 @@ class Adaptive:
         for p in range(PACES):
             for t in range(HORIZON):
                 column = [
-                    max(start_quantile(p, level, t), 1e-3) * math.exp(self.shifts[p, l, t])
-                    for l, level in enumerate(LEVELS)
+                    max(start_quantile(p, level, t), 1e-3) * math.exp(self.shifts[p, a, t])
+                    for a, level in enumerate(LEVELS)
                 ]
-                table.update({(p, l, t): q for l, q in enumerate(sorted(column))})
+                table.update({(p, a, t): q for a, q in enumerate(sorted(column))})
         return table
 
     def adapt(self, now, people):
@@ -112,14 +114,14 @@ class Adaptive:
             for p in range(PACES):
                 scores = [score(one, t, truth) for one, truth in truths if one["pace"] == p]
                 w = share * min(math.sqrt(len(scores)), 3)
-                missed = [sum(s > table[p, l, t] for s in scores) / max(len(scores), 1) for l in range(3)]
-                moves.append((w, [0.06 * w * (missed[l] - (1 - level)) for l, level in enumerate(LEVELS)]))
+                missed = [sum(s > table[p, a, t] for s in scores) / max(len(scores), 1) for a in range(3)]
+                moves.append((w, [0.06 * w * (missed[a] - (1 - level)) for a, level in enumerate(LEVELS)]))
             for p in range(PACES):
                 youth = max(0, 1 - self.sums[p, t] / 30)
-                for l in range(3):
-                    total = sum(moves[o][1][l] * (1 if o == p else youth) for o in range(PACES))
+                for a in range(3):
+                    total = sum(moves[o][1][a] * (1 if o == p else youth) for o in range(PACES))
                     bound = math.log(64)
-                    self.shifts[p, l, t] = min(max(self.shifts[p, l, t] + total, -bound), bound)
+                    self.shifts[p, a, t] = min(max(self.shifts[p, a, t] + total, -bound), bound)
                 self.sums[p, t] += moves[p][0]
         for p in range(PACES):
             own = [gradient(one, truth) for one, truth in ended if one["pace"] == p]
@@ -157,7 +159,7 @@ def score(one, t, truth):
 def gradient(one, end):
     nearest = min(range(3), key=lambda k: math.dist(one["paths"][k][-1], end))
     log = [math.log(w) if w else math.log(2.0**-1022) for w in one["weights"]]
-    return max(log[nearest] - sum(w * l for w, l in zip(one["weights"], log)), -10)
+    return max(log[nearest] - sum(w * x for w, x in zip(one["weights"], log)), -10)
 
 
 adaptive, rows = Adaptive(), []
@@ -167,7 +169,7 @@ for frame, people in stream():
     radii = [adaptive.radius(one, k, t) for one in adapted for k in range(3) for t in range(HORIZON)]
     row = [sum(n * x for n, x in enumerate(xs, 1)) for xs in (weights, radii)]
     for p in range(PACES):
-        quantiles = [adaptive.table[p, l, t] for l in range(3) for t in range(HORIZON)]
+        quantiles = [adaptive.table[p, a, t] for a in range(3) for t in range(HORIZON)]
         row.append(sum(n * q for n, q in enumerate(quantiles, 1)))
     rows.append([frame] + [float(f"{x:.12g}") for x in row])
 print(adaptive.log_powers, min(adaptive.shifts.values()), max(adaptive.shifts.values()), adaptive.sums)
