@@ -138,7 +138,7 @@ fn splines_and_lists_of_tracks_are_read() {
 
     // A spline that begins at a frame that counts, and one with parts of 500 and of 501 frames.
     let vsp = "3 - the number of splines\n3 - Num of control points\n-10.0 40.0 5 0.5 - (2D point, m_id)\n\
-               10 40 25 0\n10 60 45 0\n2 - Num of control points\n7 1 -20 0\n3 9 -10 0\n\
+               10 40 25 0\n10 60 45 0\n3 - Num of control points\n7 1 -20 0\n3 9 -10 0\n3 3 -5 0\n\
                4 - Num of control points\n0 0 1007 0\n50 100 1507 0\n8 8 2008 0\n6 9 2010 0\n";
     let (recording, mut rows) = rows("annotation.vsp", vsp);
     assert_eq!(recording.stated_frame_time(), Some(1.0 / 25.0));

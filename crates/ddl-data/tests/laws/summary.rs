@@ -79,7 +79,12 @@ fn holes_and_training_samples_are_counted() {
     // 20 steps from each of the frames 0 to 80, but no moment at frame 50.
     assert_eq!(summary.to_learn_from, 80);
     let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();
-    assert_eq!(few.summary().warnings(), [PlausibilityWarning::NothingToLearnFrom]);
+    let summary = few.summary();
+    assert_eq!((summary.to_forecast, summary.seen_whole), (11, 5));
+    assert_eq!(summary.warnings(), [PlausibilityWarning::NothingToLearnFrom]);
+    // Two and four rows of a hundred.
+    let without = |missing: usize| warnings([&walk(0.5)[..50], &walk(0.5)[50 + missing..]].concat()).len();
+    assert_eq!([without(2), without(4)], [0, 1]);
 }
 
 /// A counter and a time of day that wrap, of one and in the order of tracks, and parts of a crowd; but no disorder.
@@ -158,6 +163,9 @@ fn speeds_are_doubted_from_their_limits_on() {
         61,
         &[&|t| on_way(0.048 * ((t / 9.0).floor() * 3.0 + (t % 9.0).min(3.0)))],
     );
+    // Beside two who walk in a circle.
+    let circle = |t: f64| [2.0 * (0.1 * t).cos(), 2.0 * (0.1 * t).sin()];
+    check("", 61, &[&|t| on_way(0.019 * t), &circle, &circle]);
     // With 0.4 m of the step: 11.75 and 12.25 m/s.
     for (jump, expected) in [(4.3, ""), (4.5, "Jump")] {
         check(
@@ -211,17 +219,15 @@ fn rows_are_summed_up_as_by_hand() {
     let frames = [0, 6, 10, 15, 21, 25, 30, 36, 61, 65, 70, 90, 96].map(|frame| (frame, 1));
     let rows = frames.into_iter().chain([5, 10, 15, 24].map(|frame| (frame, 2)));
     let rows = rows.map(|(frame, id)| Observation::new(frame, PedestrianId(id), [0.05 * frame as f64, -id as f64]));
-    let summary = Recording::new("yard", 10, rows.collect()).unwrap().summary();
-    let found = [
-        summary.seconds,
-        summary.rows_a_second.unwrap(),
-        summary.jitter,
-        summary.unseen,
-    ];
+    let recording = Recording::new("yard", 10, rows.collect()).unwrap();
+    // The difference of 9 is a gap, too, where it is more than a step.
+    assert_eq!(recording.clone().with_frame_step(2).unwrap().summary().holes, 3);
+    let summary = recording.summary();
+    let of_rows = [summary.rows_a_second.unwrap(), summary.jitter, summary.unseen];
     let is_near = |(a, b): (f64, f64)| (a - b).abs() < 1e-12;
-    assert!(found.into_iter().zip([3.84, 5.0, 0.04, 0.32]).all(is_near), "{found:?}");
+    assert!(of_rows.into_iter().zip([5.0, 0.04, 0.32]).all(is_near), "{of_rows:?}");
     let gap = summary.longest_hole.unwrap();
-    assert!(is_near((gap.seconds, 1.0)) && gap.after == 36);
+    assert!(is_near((summary.seconds, 3.84)) && is_near((gap.seconds, 1.0)) && gap.after == 36);
     assert_eq!(
         (summary.holes, summary.low, summary.high),
         (2, [0.0, -2.0], [4.800_000_000_000_001, -1.0])
