@@ -17,8 +17,8 @@ struct Film {
     interval: Option<f64>,
     /// Frame, pedestrian, x and y.
     rows: Vec<(i64, i64, f64, f64)>,
-    /// The tick of each, and of each pedestrian its number, the sums of x and of y of its positions, the first once, the
-    /// second twice and so on, and its quality: unseen, age, deviation and velocity deviation.
+    /// The tick of each, and of each pedestrian its number, the sums of x and of y (the first position once, the
+    /// second twice and so on), and its quality: unseen, age, deviation and velocity deviation.
     windows: Vec<(i64, Vec<[f64; 7]>)>,
     misfits: Vec<(i64, i64, f64, u8)>,
     noise: f64,

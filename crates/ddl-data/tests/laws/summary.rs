@@ -97,6 +97,7 @@ fn frames_that_begin_again_are_counted() {
         ("0,1 0,2 9,1 9,2 60,1 60,2 0,3 0,4 60,3 60,4", 1),
         ("3,1 1,2 2,3 6,1 4,2 9,3 7,2", 0),
         ("30,1 9,1 50,1 2,1", 0),
+        ("0,1 0,2 4,1 4,2 3,3 3,4 8,3 8,4", 0),
     ] {
         for head in ["frame", "time"] {
             let text = format!("{head},id,x,y\n{},0,0\n", rows.replace(' ', ",0,0\n"));
