@@ -1,19 +1,20 @@
 //! The bytes of a message are those that its definition describes: a writer that knows only the text makes them.
 
-use ddl_core::{Forecast, HORIZON, PedestrianId, Window};
 use ddl_ros::msg::{
-    Detection3DArray, DiagnosticArray, Forecasts, Header, MarkerArray, OccupancyGrid, Path, People, Person, TfMessage,
-    Time, TrackedPerson, TrackedPersons,
+    Detection3DArray, DiagnosticArray, Forecasts, MarkerArray, OccupancyGrid, Path, People, TfMessage, Time,
+    TrackedPersons,
 };
-use ddl_ros::{Message, Moment, RosError, definition, read, read_tracks, write};
+use ddl_ros::{Message, definition, read, write};
 use proptest::prelude::*;
 use std::collections::HashMap;
 
-/// Writes random values of the types in a definition.
+/// Writes random values of the types in a definition, in both orders of bytes, and lists the names of the fields.
 struct Writer<'a> {
-    definitions: HashMap<&'a str, Vec<&'a str>>,
+    definitions: HashMap<&'a str, Vec<(&'a str, &'a str)>>,
     random: std::iter::Cycle<std::slice::Iter<'a, u8>>,
     body: Vec<u8>,
+    swapped: Vec<u8>,
+    names: Vec<&'a str>,
 }
 
 impl Writer<'_> {
@@ -23,8 +24,11 @@ impl Writer<'_> {
     }
 
     fn put(&mut self, bytes: &[u8]) {
-        self.body.resize(self.body.len().next_multiple_of(bytes.len()), 0);
+        for body in [&mut self.body, &mut self.swapped] {
+            body.resize(body.len().next_multiple_of(bytes.len()), 0);
+        }
         self.body.extend(bytes);
+        self.swapped.extend(bytes.iter().rev());
     }
 
     fn value(&mut self, kind: &str) {
@@ -43,11 +47,16 @@ impl Writer<'_> {
             "string" => {
                 let text = "x".repeat(self.below(6)) + "\0";
                 self.put(&(text.len() as u32).to_le_bytes());
+                self.swapped.extend(text.bytes());
                 return self.body.extend(text.bytes());
             }
             message => {
                 let fields = self.definitions[message].clone();
-                return fields.into_iter().for_each(|field| self.value(field));
+                return fields.into_iter().for_each(|(field, name)| {
+                    // A default may follow the name.
+                    self.names.extend(name.split(' ').next());
+                    self.value(field);
+                });
             }
         };
         let limit = if kind == "bool" { 2 } else { 256 };
@@ -56,7 +65,7 @@ impl Writer<'_> {
     }
 }
 
-fn is_described<M: Message>(random: &[u8]) {
+fn is_described<M: Message + std::fmt::Debug>(random: &[u8]) {
     // The first part has no name.
     let text = "\n".to_owned() + &definition(M::TYPE).expect("a definition");
     let rule = "=".repeat(80) + "\nMSG: ";
@@ -64,25 +73,32 @@ fn is_described<M: Message>(random: &[u8]) {
     let definitions = parts.map(|(name, body)| {
         let lines = body.lines().map(|line| line.split_once(' ').unwrap_or_default());
         let fields = lines.filter(|(kind, name)| !kind.starts_with('#') && !kind.is_empty() && !name.contains('='));
-        (name, fields.map(|(kind, _)| kind).collect())
+        (name, fields.collect())
     });
     let (definitions, random) = (definitions.collect(), random.iter().cycle());
     let mut writer = Writer {
         definitions,
         random,
         body: Vec::new(),
+        swapped: Vec::new(),
+        names: Vec::new(),
     };
     writer.value("");
     let bytes = [&[0, 1, 0, 0], &writer.body[..]].concat();
     let message: M = read(&bytes).expect(M::TYPE);
     assert_eq!(write(&message).expect(M::TYPE), bytes, "{}", M::TYPE);
+    let swapped: M = read(&[&[0; 4], &writer.swapped[..]].concat()).expect(M::TYPE);
+    assert_eq!(write(&swapped).expect(M::TYPE), bytes, "{}", M::TYPE);
+    let shown = format!("{message:?}");
+    let names = shown.split(' ').filter_map(|word| word.strip_suffix(':'));
+    assert!(names.eq(writer.names.iter().copied()), "{shown}");
     let end = writer.below(256) % bytes.len();
     assert!(read::<M>(&bytes[..end]).is_err());
 }
 
 proptest! {
     #[test]
-    fn every_message_has_the_bytes_of_its_definition(random in prop::collection::vec(any::<u8>(), 1..99)) {
+    fn every_message_has_the_bytes_and_names_of_its_definition(random in prop::collection::vec(any::<u8>(), 1..99)) {
         is_described::<Detection3DArray>(&random);
         is_described::<People>(&random);
         is_described::<TrackedPersons>(&random);
@@ -96,82 +112,22 @@ proptest! {
 }
 
 #[test]
-fn a_forecast_is_written_as_it_is() {
-    let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect();
-    let window = Window::new("corridor", 0, 1, vec![PedestrianId(7)], vec![walk]).unwrap();
-    let ways = [1.0, -1.0].map(|side| (1..=HORIZON).map(move |t| [3.5 + t as f64, side * t as f64]));
-    let goals = Some(vec![[15.5, 12.0], [15.5, -12.0]]);
-    let positions = ways.into_iter().flatten().collect();
-    let forecast = &Forecast::new(1, 2, positions, vec![0.25, 0.75], goals).unwrap();
-    let (window, header, joint) = (&window, &header(), false);
-    let moment = Moment {
-        window,
-        forecast,
-        header,
-        joint,
-    };
-    let pedestrian = &moment.forecasts().pedestrians[0];
-    let second = &pedestrian.hypotheses[1];
-    assert_eq!(
-        (pedestrian.id.as_str(), pedestrian.position.x, second.weight),
-        ("7", 3.5, 0.75)
-    );
-    assert_eq!((second.x[11], second.y[11], second.goal.y), (15.5, -12.0, -12.0));
-    let [first, .., last] = &moment.likeliest_paths()[0].poses[..] else {
-        panic!("a path has 13 poses");
-    };
-    assert_eq!(
-        (first.pose.position.x, last.pose.position.y, last.pose.orientation.w),
-        (3.5, -12.0, 1.0)
-    );
-    assert_eq!(last.header.stamp.microseconds(), 5_800_005);
-    let markers = moment.markers().markers;
-    let counts: Vec<_> = markers
-        .iter()
-        .map(|marker| (marker.points.len(), marker.colors.len()))
-        .collect();
-    assert_eq!(counts, [(24, 0), (2, 2)]);
-}
-
-fn header() -> Header {
-    let stamp = Time::of_microseconds(1_000_005);
-    Header {
-        stamp,
-        frame_id: "map".to_owned(),
-    }
-}
-
-#[test]
 fn the_package_of_ros_has_the_version_of_the_crate() {
     assert!(include_str!("../package.xml").contains(concat!("<version>", env!("CARGO_PKG_VERSION"), "<")));
 }
 
 #[test]
-fn what_is_wrong_is_said() {
-    let mut people = People {
-        header: header(),
-        people: vec![Person::default()],
-    };
-    let error = |people: &People| {
-        read_tracks(People::TYPE, &write(people).unwrap())
-            .unwrap_err()
-            .to_string()
-    };
-    assert!(error(&people).contains("people[0] has no name"), "{}", error(&people));
-    people.header = Header::default();
-    assert!(error(&people).contains("set header.stamp"), "{}", error(&people));
-    let longer = [write(&people).unwrap(), vec![0; 4]].concat();
-    assert!(matches!(read::<People>(&longer), Err(RosError::Rest { left: 4, .. })));
-
-    let mut tracks = TrackedPersons {
-        header: header(),
-        tracks: vec![TrackedPerson::default(); 2],
-    };
-    tracks.tracks[0].is_occluded = true;
-    tracks.tracks[1].track_id = 8;
-    let observed = read_tracks(TrackedPersons::TYPE, &write(&tracks).unwrap()).unwrap();
-    assert_eq!(
-        (observed.pedestrians[0].name.as_str(), observed.left_out.len()),
-        ("8", 1)
-    );
+fn times_are_whole_microseconds_on_both_sides_of_0() {
+    let time = |sec, nanosec| Time { sec, nanosec };
+    for (microseconds, written) in [
+        (1_000_005, time(1, 5000)),
+        (-1, time(-1, 999_999_000)),
+        (-2_500_000, time(-3, 500_000_000)),
+    ] {
+        assert_eq!(Time::of_microseconds(microseconds), written);
+        assert_eq!(written.microseconds(), microseconds);
+    }
+    assert_eq!(time(2, 1_999).microseconds(), 2_000_001);
+    assert_eq!(time(2, 999_999_000).after(0.000_001_6), time(3, 1000));
+    assert_eq!(time(2, 0).after(-0.4), time(1, 600_000_000));
 }
