@@ -75,7 +75,8 @@ fn is_described<M: Message + std::fmt::Debug>(random: &[u8]) {
         let fields = lines.filter(|(kind, name)| !kind.starts_with('#') && !kind.is_empty() && !name.contains('='));
         (name, fields.collect())
     });
-    let (definitions, random) = (definitions.collect(), random.iter().cycle());
+    let (definitions, random) = (definitions.collect::<HashMap<_, _>>(), random.iter().cycle());
+    assert_eq!(definitions.len(), 1 + text.matches(&rule).count(), "{text}");
     let mut writer = Writer {
         definitions,
         random,
