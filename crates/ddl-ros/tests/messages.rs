@@ -96,12 +96,10 @@ fn names_that_are_no_number_get_one_which_they_keep() {
     });
     let (numbering, mut observed) = (&mut Numbering::remembering(9), Observed::new(header(), seen.collect()));
     let (seen, words) = observed.numbered(numbering);
-    let named: Vec<_> = seen.iter().map(|(id, _)| words.of(*id).to_string()).collect();
-    assert_eq!(
-        (named, [0, 3, 5].map(|i| seen[i].0.0)),
-        (names.map(str::to_owned).into(), [7, -3, (1 << 53) - 1])
-    );
-    assert_eq!(seen.iter().map(|(_, place)| *place).collect::<Vec<_>>(), places);
+    assert_eq!([0, 3, 5].map(|i| seen[i].0.0), [7, -3, (1 << 53) - 1]);
+    for (i, (id, place)) in seen.iter().enumerate() {
+        assert_eq!((words.of(*id).to_string(), place), (names[i].to_owned(), &places[i]));
+    }
     observed.keep("why", |seen| seen.name != "7");
     observed.keep("why", |seen| seen.name.len() < 5);
     observed.pedestrians[2].position.y = f64::NAN;

@@ -157,3 +157,36 @@ pub(crate) fn moved(transform: &Isometry3<f64>, Point { x, y, z }: Point) -> Poi
 fn name(frame: &str) -> &str {
     frame.trim_start_matches('/')
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
+
+    #[test]
+    fn places_are_where_matrices_put_them() {
+        // The messages of `reference/transforms.py`, whether they rest, and what is asked then.
+        type Asked = Vec<(Header, Point, Value)>;
+        let text = include_str!("../tests/reference/transforms.json");
+        for (messages, asked) in serde_json::from_str::<Vec<(Vec<(bool, TfMessage)>, Asked)>>(text).unwrap() {
+            let mut transforms = Transforms::new("/map", None, 0.3);
+            for (is_static, message) in messages {
+                transforms.add(message, is_static).unwrap();
+            }
+            for (header, place, expected) in asked {
+                match transforms.to_fixed(&header) {
+                    Ok((transform, is_held)) => {
+                        let place = moved(&transform, place);
+                        let [x, y] = [0, 1].map(|axis| expected[axis].as_f64().unwrap());
+                        assert!(
+                            (place.x - x).hypot(place.y - y) < 1e-9,
+                            "{header:?}: {place:?}, not {expected}"
+                        );
+                        assert_eq!((is_held, place.z), (expected[2] == true, 0.0));
+                    }
+                    Err(error) => assert!(error.to_string().contains(expected.as_str().unwrap()), "{error}"),
+                }
+            }
+        }
+    }
+}

@@ -55,7 +55,7 @@ def people(time, x):
     return {"header": header(time), "people": rows}
 
 
-def case(messages, rows=(), notes=(), asked=None, restarts=0, frame="odom", error=""):
+def case(messages, rows=(), notes=(), asked=None, restarts=0, frame="odom", error=None):
     found = {"rows": rows, "notes": notes, "restarts": restarts, "frame": frame}
     return {"messages": messages, "asked": asked, "found": found, "error": error}
 

@@ -154,7 +154,7 @@ def track(number, is_occluded, *position):
     return state | {"age": {"sec": 3, "nanosec": 0}, "pose": where, "twist": TWIST}
 
 
-def case(kind, seen, rows=(), left_out=None, moment=MOMENT, error=""):
+def case(kind, seen, rows=(), left_out=None, moment=MOMENT, error=None):
     field = {"Detection3DArray": "detections", "People": "people", "TrackedPersons": "tracks"}[kind]
     expected = [header(moment), rows, left_out or {}]
     return {"kind": kind, "message": {"header": header(moment), field: seen}, "expected": expected, "error": error}
