@@ -2,7 +2,7 @@
 
 #![allow(unsafe_code, reason = "calls as from C")]
 
-use crate::boundary::guarded;
+use crate::boundary::{guarded, values};
 use crate::functions::*;
 use crate::layout::{ddl_model, ddl_observation, ddl_point, ddl_request, ddl_status};
 use ddl::data::{Clock, Completeness, LiveTracks, PedestrianId, TimeUnit};
@@ -68,20 +68,36 @@ fn live_tracks_have_the_bits_of_the_facade() {
             expected.push(frame, seen)
         };
         let view = ddl_forecast_view(Some(&forecast)).unwrap();
-        let Some(now) = now.unwrap().map(|now| now.forecast) else {
+        let Some(now) = now.unwrap() else {
             assert_eq!((tick, view.pedestrians), (0, 0));
             continue;
         };
+        let (window, now, mut expected) = (now.window, now.forecast, <[Vec<f64>; 8]>::default());
         assert_eq!((view.pedestrians, view.hypotheses), (PEOPLE, now.hypotheses()));
-        for pair in 0..PEOPLE * now.hypotheses() {
-            let (i, k) = (pair / now.hypotheses(), pair % now.hypotheses());
-            // SAFETY: arrays of a view of this shape.
-            let (path, weight) = unsafe {
-                let paths = view.paths.cast::<[f64; 2]>();
-                (slice::from_raw_parts(paths.add(12 * pair), 12), *view.weights.add(pair))
-            };
-            assert_eq!((path, weight), (now.hypothesis(i, k), now.weight(i, k)));
+        let [past, age, uncertainty, paths, weights, goals, familiarity, spread] = &mut expected;
+        for i in 0..PEOPLE {
+            past.extend(window.observed(i).as_flattened());
+            age.push(window.quality(i).age);
+            uncertainty.push(window.quality(i).uncertainty());
+            familiarity.extend(now.familiarity(i));
+            spread.extend((0..12).filter_map(|t| now.scale(i, t)));
+            for k in 0..now.hypotheses() {
+                paths.extend(now.hypothesis(i, k).as_flattened());
+                weights.push(now.weight(i, k));
+                goals.extend(now.goal(i, k).into_iter().flatten());
+            }
         }
+        let [past, paths, goals] = [view.past, view.paths, view.goals].map(<*const ddl_point>::cast);
+        let (first, second) = ([past, view.age, view.uncertainty, paths], [view.weights, goals]);
+        let found = first.into_iter().chain(second).chain([view.familiarity, view.spread]);
+        for (first, expected) in found.zip(&expected) {
+            // SAFETY: an array of a view of this shape, or null.
+            let found = unsafe { values(first, expected.len(), "numbers") };
+            assert!(found.is_ok_and(|found| found == *expected) && first.is_null() == expected.is_empty());
+        }
+        // SAFETY: as above.
+        let ids = unsafe { slice::from_raw_parts(view.ids, PEOPLE) };
+        assert_eq!(ids, [35, 36, 37, 38, 39, 40]);
     }
     ddl_live_free(Some(live));
     ddl_forecast_free(Some(forecast));

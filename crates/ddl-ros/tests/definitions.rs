@@ -119,16 +119,20 @@ fn the_package_of_ros_has_the_version_of_the_crate() {
 
 #[test]
 fn times_are_whole_microseconds_on_both_sides_of_0() {
-    let time = |sec, nanosec| Time { sec, nanosec };
-    for (microseconds, written) in [
-        (1_000_005, time(1, 5000)),
-        (-1, time(-1, 999_999_000)),
-        (-2_500_000, time(-3, 500_000_000)),
+    for (microseconds, sec, nanosec) in [
+        (1_000_005, 1, 5_000),
+        (-1, -1, 999_999_000),
+        (-2_500_000, -3, 500_000_000),
     ] {
-        assert_eq!(Time::of_microseconds(microseconds), written);
-        assert_eq!(written.microseconds(), microseconds);
+        let time = Time { sec, nanosec };
+        assert_eq!(
+            (Time::of_microseconds(microseconds), time.microseconds()),
+            (time, microseconds)
+        );
+        let nanosec = nanosec + 999;
+        assert_eq!(
+            Time { sec, nanosec }.after(0.400_000_6).microseconds(),
+            microseconds + 400_001
+        );
     }
-    assert_eq!(time(2, 1_999).microseconds(), 2_000_001);
-    assert_eq!(time(2, 999_999_000).after(0.000_001_6), time(3, 1000));
-    assert_eq!(time(2, 0).after(-0.4), time(1, 600_000_000));
 }

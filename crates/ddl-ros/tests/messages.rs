@@ -111,10 +111,7 @@ fn names_that_are_no_number_get_one_which_they_keep() {
 
 #[test]
 fn bytes_that_are_no_message_are_refused() {
-    let people = People {
-        header: header(),
-        people: Vec::new(),
-    };
+    let people = People::default();
     let bytes = write(&people).unwrap();
     let longer = |count| read::<People>(&[&bytes[..], &vec![0; count]].concat());
     // Messages are padded to four bytes.

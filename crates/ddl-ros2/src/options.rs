@@ -189,3 +189,23 @@ fn positive(text: &str) -> Result<f64, String> {
         Err("give a number above 0".to_owned())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn topics_areas_and_transforms_are_read_as_ros_writes_them() {
+        let line = "node --namespace=/hall/ --name=crowd --topic=seen --remap=seen:=/people,~/paths:=ways,x:=y --joint \
+                    --grids=4.8 --area=-1,2,3.5,4 --cell=0.5 --transform=1,2,3,0.7,0.4,-0.2";
+        let options = Options::parse_from(line.split_whitespace());
+        let topics = ["seen", "~/markers", "~/paths", "/tf"].map(|name| options.topic(name));
+        assert_eq!(topics.join(" "), "/people /hall/crowd/markers /hall/ways /tf");
+        assert_eq!(options.strange_topics().collect::<Vec<_>>(), ["x"]);
+        let area = options.fixed_area().unwrap().unwrap();
+        assert_eq!((area.origin(), area.size()), ([-1.0, 2.0], [9, 4]));
+        let moved = crate::transforms::moved(&options.transform.unwrap(), [1.5, -0.75].into());
+        // Rz(0.7) Ry(0.4) Rx(-0.2) of it, and (1, 2).
+        assert!((moved.x - 2.5746109).hypot(moved.y - 2.3652286) < 1e-6);
+    }
+}

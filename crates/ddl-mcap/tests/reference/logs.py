@@ -55,9 +55,10 @@ def people(time, x):
     return {"header": header(time), "people": rows}
 
 
-def case(messages, rows=(), notes=(), asked=None, restarts=0, frame="odom", error=None):
-    found = {"rows": rows, "notes": notes, "restarts": restarts, "frame": frame}
-    return {"messages": messages, "asked": asked, "found": found, "error": error}
+def case(messages, rows=(), notes=(), asked=None, restarts=0, frame="odom", error=None, file=None):
+    # Times are microseconds, of which 400,000 are a step.
+    found = {"rows": rows, "notes": notes, "restarts": restarts, "frame": frame, "step": 400_000}
+    return {"messages": messages, "file": file, "asked": asked, "found": found, "error": error}
 
 
 KINDS = [
@@ -153,11 +154,34 @@ def wrong():
         messages = [["/p", PEOPLE, "json", 1_250_000_000, data] for data in (one(), second)]
         yield case(messages, error=f"topic /p, message 1 at 1.250000 s: {error}")
     note = "topic /p (people_msgs/msg/People as json, 2 messages): times of the messages, positions in the frame"
-    messages = [["/p", PEOPLE, "json", 1, one()], ["/p", PEOPLE, "json", 1, one(place={"x": 1.0, "y": None})]]
-    yield case(messages, [[2_000_002, "a", 1.0, 2.0]], [f'{note} "odom"; 1 rows left out: {FAR}'])
+    early = one({"sec": 0, "nanosec": 250_000_000})
+    messages = [["/p", PEOPLE, "json", 1, data] for data in (early, one(place={"x": 1.0, "y": None}))]
+    yield case(messages, [[250_000, "a", 1.0, 2.0]], [f'{note} "odom"; 1 rows left out: {FAR}'])
+    messages = [["/p", PEOPLE, "json", 1, one(name=name)] for name in ("a", "b")]
+    yield case(messages, [[2_000_002, name, 1.0, 2.0] for name in ("a", "b")], [f'{note} "odom"'])
+
+
+def corpus():
+    """Files of `tests/fuzz/corpus/mcap`, which other programs wrote: three straight walks."""
+    classes, occluded = ", classes read person; 10 rows left out: class car", "; 10 rows left out: occluded"
+    for file, kind, told in [
+        ("people_zstd", f"/people ({PEOPLE} as cdr, 10 messages)", ""),
+        ("detections_lz4", f"/detections ({DETECTIONS} as cdr, 10 messages)", classes),
+        ("persons_json", "/persons (spencer_tracking_msgs/msg/TrackedPersons as json, 10 messages)", occluded),
+        ("lines_json", "/tracks ( as json, 10 messages)", ""),
+    ]:
+        frame = None if file == "lines_json" else "map"
+        note = f'topic {kind}: times of the messages, positions in the frame "{frame or ""}"{told}'
+        rows = []
+        for k in range(10):
+            t = 100 + 0.4 * k
+            s = t - 100
+            walks = [(1.2 * s, 0.0), (9 - 1.1 * s, 0.8), (3.0, 0.9 * s - 2)]
+            rows += [[round(1e6 * t), str(i + 1), x, y] for i, (x, y) in enumerate(walks)]
+        yield case([], rows, [note], frame=frame, file=file)
 
 
 if __name__ == "__main__":
-    cases = [*kinds(), *topics(), *lines(), *wrong()]
+    cases = [*kinds(), *topics(), *lines(), *wrong(), *corpus()]
     with open("logs.json", "w") as file:
         file.write("[\n" + ",\n".join(map(json.dumps, cases)) + "\n]\n")
