@@ -45,7 +45,6 @@ fn what_is_missing_is_told() {
             1,
             "leave out --columns and --unit",
         ),
-        ("data detections_lz4.mcap", 0, "; 10 rows left out: class car"),
         (
             "data detections_lz4.mcap --keep class=car",
             0,

@@ -1,15 +1,17 @@
 //! What is read of logs, and what is written (`reference/logs.py`).
 
 use ddl_core::{Forecast, PedestrianId, Window};
-use ddl_mcap::{ForecastLog, LoggedTracks, is_log, is_mcap, read_log};
+use ddl_mcap::{ForecastLog, LoggedTracks, TrackTopic, is_log, is_mcap, read_log};
 use ddl_ros::msg::{Forecasts, Header, MarkerArray, Path, People, Time};
 use ddl_ros::{Message as _, Moment};
 use mcap::records::MessageHeader;
-use mcap::{MessageStream, WriteOptions};
+use mcap::{McapResult, MessageStream, WriteOptions};
 use serde_json::{Value, from_value, json};
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::fs;
 use std::io::Cursor;
+use std::slice::from_ref;
 use tempfile::TempDir;
 
 /// Logs of other programs.
@@ -21,35 +23,35 @@ type Entry = (String, String, String, u64, Value);
 fn bytes((_, _, encoding, _, data): &Entry) -> Vec<u8> {
     match data {
         Value::String(text) => text.clone().into(),
-        data if encoding == "cdr" => ddl_ros::write(&from_value::<People>(data.clone()).unwrap()).unwrap(),
+        data if encoding == "cdr" => ddl_ros::write(&from_value::<People>(data.clone()).expect("people")).expect("CDR"),
         data => data.to_string().into(),
     }
 }
 
-fn log(entries: &[Entry], options: WriteOptions) -> Vec<u8> {
+fn log(entries: &[Entry], options: WriteOptions) -> McapResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
-    let mut writer = options.create(&mut file).unwrap();
+    let mut writer = options.create(&mut file)?;
     for (entry, sequence) in entries.iter().zip(0..) {
         let (topic, kind, encoding, log_time, _) = entry;
-        let schema = writer.add_schema(kind, "any", b"text").unwrap();
+        let schema = writer.add_schema(kind, "any", b"text")?;
         let header = MessageHeader {
-            channel_id: writer.add_channel(schema, topic, encoding, &BTreeMap::new()).unwrap(),
+            channel_id: writer.add_channel(schema, topic, encoding, &BTreeMap::new())?,
             sequence,
             log_time: *log_time,
             publish_time: log_time + 7,
         };
-        writer.write_to_known_channel(&header, &bytes(entry)).unwrap();
+        writer.write_to_known_channel(&header, &bytes(entry))?;
     }
-    writer.finish().unwrap();
+    writer.finish()?;
     drop(writer);
-    file.into_inner()
+    Ok(file.into_inner())
 }
 
 /// Reads a file of these bytes; all but cars are pedestrians.
 fn read(file: &[u8], topic: Option<&str>) -> Result<LoggedTracks, String> {
-    let folder = TempDir::new().unwrap();
+    let folder = TempDir::new().expect("a file");
     let path = folder.path().join("a.mcap");
-    fs::write(&path, file).unwrap();
+    fs::write(&path, file).expect("a file");
     read_log(&path, topic, |class| class != "car").map_err(|error| error.to_string())
 }
 
@@ -76,7 +78,7 @@ fn messages_give_their_rows_notes_and_errors() {
         let entries: Vec<Entry> = from_value(case["messages"].take()).unwrap();
         let file = match case["file"].as_str() {
             Some(name) => fs::read(format!("{CORPUS}/{name}.mcap")).unwrap(),
-            None => log(&entries, WriteOptions::new()),
+            None => log(&entries, WriteOptions::new()).unwrap(),
         };
         match read(&file, case["asked"].as_str()) {
             Ok(tracks) => {
@@ -99,7 +101,7 @@ fn of_a_file_that_is_cut_off_all_that_is_whole_is_read() {
     let entries: Vec<Entry> = entries.collect();
     let in_chunks = WriteOptions::new().chunk_size(Some(1));
     for options in [WriteOptions::new().use_chunks(false), in_chunks.clone()] {
-        let file = log(&entries, options);
+        let file = log(&entries, options).unwrap();
         for end in (1..=file.len()).rev().step_by(7) {
             let part = &file[..end];
             // A message ends with its data, and with it a chunk.
@@ -117,22 +119,22 @@ fn of_a_file_that_is_cut_off_all_that_is_whole_is_read() {
             assert!(end < file.len() || notes.is_empty());
         }
     }
-    let mut damaged = log(&entries, in_chunks);
+    let mut damaged = log(&entries, in_chunks).unwrap();
     let place = damaged.windows(5).position(|text| text == b"track").unwrap();
     damaged[place + 1] ^= 1;
     assert!(read(&damaged, None).unwrap_err().contains("a chunk is damaged"));
 }
 
 #[test]
-fn a_written_log_holds_the_tracks_of_all_files_and_the_forecasts() {
+fn the_files_of_a_bag_are_read_in_their_order_and_written_with_the_forecasts() {
     let cases: Vec<Value> = serde_json::from_str(include_str!("reference/logs.json")).unwrap();
     // The last kind: people in CDR, with times of their own.
     let [first, second]: [Entry; 2] = from_value(cases[6]["messages"].clone()).unwrap();
     let text: Entry = from_value(json!(["/text", "std_msgs/String", "json", 1, "{}"])).unwrap();
     let (folder, options) = (TempDir::new().unwrap(), WriteOptions::new());
     let at = |name: &str| folder.path().join(name);
-    fs::write(at("z.mcap"), log(&[text, first.clone()], options.clone())).unwrap();
-    fs::write(at("a.mcap"), log(&[second.clone()], options)).unwrap();
+    fs::write(at("z.mcap"), log(&[text, first.clone()], options.clone()).unwrap()).unwrap();
+    fs::write(at("a.mcap"), log(from_ref(&second), options).unwrap()).unwrap();
     fs::write(at("old.MCAP"), "").unwrap();
     assert!(!is_log(folder.path()) && is_log(&at("x.db3")) && is_mcap(&at("x.MCAP")) && !is_mcap(&at("x.db3")));
     // An unpacked file is beside its old name.
@@ -144,55 +146,56 @@ fn a_written_log_holds_the_tracks_of_all_files_and_the_forecasts() {
     let (notes, restarts) = (tracks.recording.notes(), tracks.recording.summary().restarts);
     assert!(notes[1].contains("does not list are not read: 1, first ") && notes[1].ends_with("old.MCAP"));
     assert_eq!((notes.len(), restarts), (2, 0));
-
-    let track = (0..8).map(|t| [0.5 * f64::from(t), -1.0]).collect();
-    let window = &Window::new("hall", 0, 1, vec![PedestrianId(7)], vec![track]).unwrap();
-    let steps = (0..24).map(|n| [3.5 + f64::from(n % 12), f64::from(n)]).collect();
-    let (forecast, joint) = (&Forecast::new(1, 2, steps, vec![0.25, 0.75], None).unwrap(), true);
     for (topic, frame_id) in [(Some(&tracks.topic), "odom"), (None, "map")] {
-        let mut file = Vec::new();
-        let mut writer = ForecastLog::new(&mut file, topic).unwrap();
-        assert_eq!(writer.assumed_frame(), topic.is_none().then_some("map"));
-        writer.add(window, forecast, joint, 2_000_003).unwrap();
-        let early = writer.add(window, forecast, joint, -1).unwrap_err();
-        assert!(early.to_string().contains("the moment -1 us is before 0"));
-        writer.finish().unwrap();
-        let (stamp, frame_id) = (Time::of_microseconds(2_000_003), frame_id.to_owned());
-        let header = &Header { stamp, frame_id };
-        let moment = Moment {
-            window,
-            forecast,
-            header,
-            joint,
-        };
-        let now = 2_000_003_000_u64;
-        let made = |topic, kind, data: Result<_, _>| json!([topic, kind, "ros2msg", 0, now, now, data.unwrap()]);
-        let mut expected = vec![
-            made("/ddl/forecasts", Forecasts::TYPE, ddl_ros::write(&moment.forecasts())),
-            made("/ddl/markers", MarkerArray::TYPE, ddl_ros::write(&moment.markers())),
-            made("/ddl/paths", Path::TYPE, ddl_ros::write(&moment.likeliest_paths()[0])),
-        ];
-        for (entry, number, time) in [(&second, 0, 103_137_000_000_u64), (&first, 1, 100_050_000_000)] {
-            let copied = json!(["/seen", People::TYPE, "any", number, time, entry.3 + 7, bytes(entry)]);
-            expected.splice(0..0, topic.map(|_| copied));
-        }
-        let found = MessageStream::new(&file).unwrap().map(|message| {
-            let (message, channel) = (message.as_ref().unwrap(), &message.as_ref().unwrap().channel);
-            let (schema, times) = (
-                channel.schema.as_ref().unwrap(),
-                [message.log_time, message.publish_time],
-            );
-            assert_eq!(channel.message_encoding, "cdr");
-            json!([
-                channel.topic,
-                schema.name,
-                schema.encoding,
-                message.sequence,
-                times[0],
-                times[1],
-                message.data
-            ])
-        });
-        assert_eq!(found.collect::<Vec<_>>(), expected);
+        is_written(topic, frame_id, [&first, &second]).unwrap();
     }
+}
+
+/// A log holds the people of a topic, and the forecasts of a moment.
+fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&Entry; 2]) -> Result<(), Box<dyn Error>> {
+    let track = (0..8).map(|t| [0.5 * f64::from(t), -1.0]).collect();
+    let window = &Window::new("hall", 0, 1, vec![PedestrianId(7)], vec![track])?;
+    let steps = (0..24).map(|n| [3.5 + f64::from(n % 12), f64::from(n)]).collect();
+    let (forecast, joint) = (&Forecast::new(1, 2, steps, vec![0.25, 0.75], None)?, true);
+    let mut file = Vec::new();
+    let mut writer = ForecastLog::new(&mut file, topic)?;
+    assert_eq!(writer.assumed_frame(), topic.is_none().then_some("map"));
+    writer.add(window, forecast, joint, 2_000_003)?;
+    let early = writer.add(window, forecast, joint, -1).expect_err("early");
+    assert!(early.to_string().contains("the moment -1 us is before 0"));
+    writer.finish()?;
+    let (stamp, frame_id) = (Time::of_microseconds(2_000_003), frame_id.to_owned());
+    let header = &Header { stamp, frame_id };
+    let moment = Moment {
+        window,
+        forecast,
+        header,
+        joint,
+    };
+    let now = 2_000_003_000_u64;
+    let made = |topic, kind, data| json!([[topic, kind, "ros2msg", "cdr"], 0, [now, now], data]);
+    let mut expected = vec![
+        made("/ddl/forecasts", Forecasts::TYPE, ddl_ros::write(&moment.forecasts())?),
+        made("/ddl/markers", MarkerArray::TYPE, ddl_ros::write(&moment.markers())?),
+        made("/ddl/paths", Path::TYPE, ddl_ros::write(&moment.likeliest_paths()[0])?),
+    ];
+    for (entry, number, time) in [(people[1], 0, 103_137_000_000_u64), (people[0], 1, 100_050_000_000)] {
+        let copied = json!([
+            ["/seen", People::TYPE, "any", "cdr"],
+            number,
+            [time, entry.3 + 7],
+            bytes(entry)
+        ]);
+        expected.splice(0..0, topic.map(|_| copied));
+    }
+    for (message, expected) in MessageStream::new(&file)?.zip(&expected) {
+        let message = message?;
+        let (channel, times) = (&message.channel, [message.log_time, message.publish_time]);
+        let schema = channel.schema.as_ref().ok_or("no schema")?;
+        let kind = json!([channel.topic, schema.name, schema.encoding, channel.message_encoding]);
+        let found = json!([kind, message.sequence, times, message.data]);
+        assert_eq!(found, *expected);
+    }
+    assert_eq!(MessageStream::new(&file)?.count(), expected.len());
+    Ok(())
 }

@@ -3,14 +3,14 @@
 use ddl_core::{Forecast, ObservationQuality, Pace, PedestrianId, PedestrianNames, RegionTable, Spread, Window};
 use ddl_data::Numbering;
 use ddl_ros::msg::{Detection3DArray, Header, People, Time, TrackedPersons};
-use ddl_ros::{Message, Moment, Observed, RosError, SeenPedestrian, occupancy_grid, read, read_tracks, write};
+use ddl_ros::{Message, Moment, Observed, RosError, occupancy_grid, read, read_tracks, write};
 use ddl_scene::{Area, Occupancy};
 use serde::de::DeserializeOwned;
 use serde_json::{Value, from_value, json, to_value};
 
 fn reference(part: &str) -> Value {
     let text = include_str!("reference/messages.json");
-    serde_json::from_str::<Value>(text).unwrap()[part].take()
+    serde_json::from_str::<Value>(text).expect("JSON")[part].take()
 }
 
 #[test]
@@ -36,7 +36,8 @@ fn forecasts_paths_and_pictures_have_all_numbers_at_their_places() {
     let full = forecast(Some(part("goals"))).with_spread(spread).unwrap();
     let full = full.with_certified(part("certified")).unwrap();
     let full = full.with_familiarity(part("familiarities")).unwrap();
-    let header = &header();
+    let (stamp, frame_id) = (Time::of_microseconds(-1_399_995), "odom".to_owned());
+    let header = &Header { stamp, frame_id };
     for (joint, forecast, name) in [(true, &full, "full"), (false, &forecast(None), "bare")] {
         let moment = Moment {
             window,
@@ -56,17 +57,16 @@ fn forecasts_paths_and_pictures_have_all_numbers_at_their_places() {
     assert_eq!(to_value(occupancy_grid(&grid, header)).unwrap(), reference("grid"));
 }
 
-fn header() -> Header {
-    let (stamp, frame_id) = (Time::of_microseconds(-1_399_995), "odom".to_owned());
-    Header { stamp, frame_id }
-}
-
 fn observed<M: Message>(message: Value) -> Result<Observed, RosError> {
-    read_tracks(M::TYPE, &write(&from_value::<M>(message).unwrap()).unwrap())
+    read_tracks(
+        M::TYPE,
+        &write(&from_value::<M>(message).expect("a message")).expect("bytes"),
+    )
 }
 
 #[test]
 fn pedestrians_have_name_class_and_place_and_others_are_counted() {
+    let numbering = &mut Numbering::remembering(9);
     for mut case in from_value::<Vec<Value>>(reference("cases")).unwrap() {
         let read = match case["kind"].as_str() {
             Some("People") => observed::<People>,
@@ -74,39 +74,27 @@ fn pedestrians_have_name_class_and_place_and_others_are_counted() {
             _ => observed::<Detection3DArray>,
         };
         match read(case["message"].take()) {
-            Ok(observed) => {
+            Ok(mut observed) => {
                 let seen = observed.pedestrians.iter();
                 let rows: Vec<_> = seen.map(|seen| json!([seen.name, seen.class, seen.position])).collect();
-                assert_eq!(json!([observed.header, rows, observed.left_out]), case["expected"]);
+                let (numbered, names) = observed.numbered(numbering);
+                // Words have numbers from 2^53 on.
+                let number =
+                    |(id, place): &(PedestrianId, _)| json!([id.0.min(1 << 53), names.of(*id).to_string(), place]);
+                let numbers: Vec<_> = numbered.iter().map(number).collect();
+                assert_eq!(
+                    json!([observed.header, rows, observed.left_out, numbers]),
+                    case["expected"]
+                );
+                let all = observed.left_out.values().sum::<usize>() + numbers.len();
+                observed.pedestrians[0].position.y = f64::NAN;
+                observed.keep_finite();
+                let (left, left_out) = (observed.pedestrians.len(), observed.left_out.values().sum::<usize>());
+                assert_eq!((left, left + left_out), (numbers.len() - 1, all));
             }
             Err(error) => assert!(error.to_string().contains(case["error"].as_str().unwrap()), "{error}"),
         }
     }
-}
-
-#[test]
-fn names_that_are_no_number_get_one_which_they_keep() {
-    // 07 is not how 7 is printed, and 2^53 is no exact number any more.
-    let names = ["7", "ann", "07", "-3", "9007199254740992", "9007199254740991"];
-    let places = [0.5, 1.5, 2.5, 3.5, 4.5, 5.5].map(|x| [x, -1.25 * x]);
-    let seen = names.iter().zip(places).map(|(name, position)| SeenPedestrian {
-        name: (*name).to_owned(),
-        position: position.into(),
-        ..SeenPedestrian::default()
-    });
-    let (numbering, mut observed) = (&mut Numbering::remembering(9), Observed::new(header(), seen.collect()));
-    let (seen, words) = observed.numbered(numbering);
-    assert_eq!([0, 3, 5].map(|i| seen[i].0.0), [7, -3, (1 << 53) - 1]);
-    for (i, (id, place)) in seen.iter().enumerate() {
-        assert_eq!((words.of(*id).to_string(), place), (names[i].to_owned(), &places[i]));
-    }
-    observed.keep("why", |seen| seen.name != "7");
-    observed.keep("why", |seen| seen.name.len() < 5);
-    observed.pedestrians[2].position.y = f64::NAN;
-    observed.keep_finite();
-    let left_out = [("why", 3), ("x or y is not finite, or beyond 10,000 km", 1)].into();
-    let later = observed.numbered(numbering).0;
-    assert_eq!((observed.left_out, later), (left_out, vec![seen[1], seen[2]]));
 }
 
 #[test]
@@ -120,6 +108,11 @@ fn bytes_that_are_no_message_are_refused() {
     let error = |bytes: &[u8]| read::<People>(bytes).unwrap_err().to_string();
     assert!(error(&bytes[..3]).contains("3 bytes has no head"));
     assert!(error(&[&[0, 3], &bytes[2..]].concat()).contains("the encoding 0x0003"));
+    let swapped = [[0; 4], [0, 0, 0, 5], [0, 0, 0, 9], [0, 0, 0, 1], [0; 4], [0; 4]].concat();
+    assert_eq!(
+        read::<People>(&swapped).unwrap().header.stamp,
+        Time { sec: 5, nanosec: 9 }
+    );
     let unknown = read_tracks("nav_msgs/msg/Path", &bytes).unwrap_err().to_string();
     assert!(unknown.contains("no type of tracks; give vision_msgs"), "{unknown}");
 }

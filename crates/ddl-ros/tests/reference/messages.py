@@ -1,6 +1,7 @@
 # Writes messages.json: a forecast without symmetry with the messages that it is, and messages of trackers with the
 # pedestrians in them. `python3 messages.py` in this folder; it needs no package.
 import json
+import re
 import struct
 
 WEIGHTS = [[0.125, 0.5, 0.375], [0.625, 0.125, 0.25]]
@@ -156,10 +157,15 @@ def track(number, is_occluded, *position):
 
 def case(kind, seen, rows=(), left_out=None, moment=MOMENT, error=None):
     field = {"Detection3DArray": "detections", "People": "people", "TrackedPersons": "tracks"}[kind]
-    expected = [header(moment), rows, left_out or {}]
+    # Names that are no numbers as these are printed, below 2^53, have numbers from there on.
+    numbers = [
+        [min(int(n), 2**53) if re.fullmatch("0|-?[1-9][0-9]*", n) else 2**53, n, [p["x"], p["y"]]] for n, _, p in rows
+    ]
+    expected = [header(moment), rows, left_out or {}, numbers]
     return {"kind": kind, "message": {"header": header(moment), field: seen}, "expected": expected, "error": error}
 
 
+NUMBERED = ["ann", "7", "07", "-3", str(2**53), str(2**53 - 1)]
 CASES = [
     case(
         "Detection3DArray",
@@ -174,9 +180,9 @@ CASES = [
     ),
     case(
         "People",
-        [person("ann", 0.5, -1.25, 3.0), person("7", 1.5, -2.25, 4.0)],
+        [person(name, 0.5 + i, -1.25 * i, 3.0) for i, name in enumerate(NUMBERED)],
         moment=400_000,
-        rows=[["ann", "", point(0.5, -1.25, 3.0)], ["7", "", point(1.5, -2.25, 4.0)]],
+        rows=[[name, "", point(0.5 + i, -1.25 * i, 3.0)] for i, name in enumerate(NUMBERED)],
     ),
     case(
         "TrackedPersons",
