@@ -151,18 +151,20 @@ mod tests {
         (1..=1002).rev().for_each(|latency| health.answered(latency.into()));
         (0..2).for_each(|_| health.hear());
         health.dropped(&anyhow::anyhow!("no 1.5"));
-        let mut said = |heard: u64, reported: u64| {
-            let ago = |seconds| Instant::now().checked_sub(Duration::from_secs(seconds));
-            health.heard = ago(heard);
-            health.reported = ago(reported).map(|at| (at, health.reported.map_or(0, |(_, dropped)| dropped)));
+        // Moments 3 s ago and in an hour, whatever the load of the machine.
+        let ahead = Instant::now() + Duration::from_hours(1);
+        let ago = Instant::now().checked_sub(Duration::from_secs(3)).unwrap();
+        let mut said = |heard, reported| {
+            health.heard = Some(heard);
+            health.reported = Some((reported, health.reported.map_or(0, |(_, dropped)| dropped)));
             let status = health.report("ddl")?.status.remove(0);
             let values: Vec<_> = status.values.into_iter().map(|pair| pair.value).collect();
             assert_eq!(values.join(" "), "2 1002 1 3 4 5 6 7 8 501.00 991.00 no 1.5");
             Some((status.level, status.message))
         };
-        assert_eq!(said(1, 0), None);
-        assert_eq!(said(1, 1), Some((1, "1 frames dropped: no 1.5".to_owned())));
-        assert_eq!(said(1, 1), Some((0, "forecasting".to_owned())));
-        assert_eq!(said(3, 1), Some((3, NO_TRACKS.to_owned())));
+        assert_eq!(said(ahead, ahead), None);
+        assert_eq!(said(ahead, ago), Some((1, "1 frames dropped: no 1.5".to_owned())));
+        assert_eq!(said(ahead, ago), Some((0, "forecasting".to_owned())));
+        assert_eq!(said(ago, ago), Some((3, NO_TRACKS.to_owned())));
     }
 }

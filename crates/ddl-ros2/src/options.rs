@@ -206,6 +206,6 @@ mod tests {
         assert_eq!((area.origin(), area.size()), ([-1.0, 2.0], [9, 4]));
         let moved = crate::transforms::moved(&options.transform.unwrap(), [1.5, -0.75].into());
         // Rz(0.7) Ry(0.4) Rx(-0.2) of it, and (1, 2).
-        assert!((moved.x - 2.5746109).hypot(moved.y - 2.3652286) < 1e-6);
+        assert!((moved.x - 2.574_610_9).hypot(moved.y - 2.365_228_6) < 1e-6);
     }
 }

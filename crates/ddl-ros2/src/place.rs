@@ -138,3 +138,34 @@ impl Place {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser as _;
+    use ddl_ros::SeenPedestrian;
+    use ddl_ros::msg::Time;
+
+    #[test]
+    fn tracks_begin_anew_when_time_goes_back_and_names_are_kept() {
+        let (mut health, options) = (Health::default(), Options::parse_from(["node", "--rate=2"]));
+        let mut place = Place::open(&options).unwrap();
+        // Two forecasts a second; more than 2 s back is another beginning.
+        let said = [10_000, 10_400, 10_800, 10_800, 9_000, 8_000, 8_600].map(|milliseconds| {
+            let mut ann = SeenPedestrian::default();
+            (ann.name, ann.position.x) = ("ann".to_owned(), f64::from(milliseconds % 2_000) / 1e3);
+            let (stamp, frame_id) = (Time::of_microseconds(1000 * i64::from(milliseconds)), String::new());
+            match place.observe(&Observed::new(Header { stamp, frame_id }, vec![ann]), &mut health) {
+                Err(_) => "refused".to_owned(),
+                Ok(()) => match place.forecast().unwrap() {
+                    None => "waits".to_owned(),
+                    Some((_, None)) => "nobody".to_owned(),
+                    Some((header, Some((window, _)))) => format!("{}@{}", window.name(0), header.stamp.microseconds()),
+                },
+            }
+        });
+        let expected = "nobody waits ann@10800000 refused refused nobody ann@8600000";
+        assert_eq!((&*said.join(" "), health.restarts, health.doubtful), (expected, 1, 0));
+        assert!(place.forecast().unwrap().is_none());
+    }
+}

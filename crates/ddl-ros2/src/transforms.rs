@@ -188,5 +188,7 @@ mod tests {
                 }
             }
         }
+        let (x, y, z) = (1.5, -0.5, f64::NAN);
+        assert_eq!(moved(&Isometry3::identity(), Point { x, y, z }), [x, y].into());
     }
 }

@@ -73,7 +73,7 @@ def odom(base, pose=([0.0, 0.0, 0.0], UP, 0.0), place=PLACE):
 
 
 RESTING = [
-    message(True, transform(0, "/map", "odom", HALL)),
+    message(True, transform(5, "/map", "odom", HALL)),
     # The newest one of a frame that rests counts, whatever its time.
     message(True, transform(0, "map", "odom", MAP), transform(9, "base", "/lidar", LIDAR)),
     message(True, transform(9, "base", "camera", CAMERA), transform(0, "hall", "map", HALL)),
@@ -101,6 +101,11 @@ CART = [message(False, transform(11_000_000, "odom", "cart", HALL))]
 BACK = [message(False, transform(9_999_999, "odom", "base", BASE[1_000_000]))]
 CASES = [
     (RESTING + MOVING, ASKED),
+    # In another parent a frame begins anew.
+    (
+        RESTING + MOVING + [message(False, transform(1_500_000, "map", "base", HALL))],
+        [asked(1_450_000, "base", "begins after the tracks"), asked(1_500_000, "base", out(HALL, LEVEL))],
+    ),
     # After 10 s the first are forgotten.
     (RESTING + MOVING + LATER, [asked(1_700_000, "base", "begins after the tracks")]),
     (RESTING + MOVING + LATER[:1], [asked(1_999_999, "base", "begins after the tracks")]),
