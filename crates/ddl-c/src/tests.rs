@@ -4,9 +4,9 @@
 
 use crate::boundary::{guarded, values};
 use crate::functions::*;
-use crate::layout::{ddl_model, ddl_observation, ddl_point, ddl_request, ddl_status};
-use ddl::data::{Clock, Completeness, LiveTracks, PedestrianId, TimeUnit};
-use ddl::{AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, LiveForecaster};
+use crate::layout::{ddl_model, ddl_observation, ddl_point, ddl_request, ddl_status, ddl_view};
+use ddl::data::{Clock, Completeness, LiveTracks, PedestrianId, TimeUnit, Window};
+use ddl::{AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, LiveForecaster};
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
 use std::slice;
@@ -72,35 +72,40 @@ fn live_tracks_have_the_bits_of_the_facade() {
             assert_eq!((tick, view.pedestrians), (0, 0));
             continue;
         };
-        let (window, now, mut expected) = (now.window, now.forecast, <[Vec<f64>; 8]>::default());
-        assert_eq!((view.pedestrians, view.hypotheses), (PEOPLE, now.hypotheses()));
-        let [past, age, uncertainty, paths, weights, goals, familiarity, spread] = &mut expected;
-        for i in 0..PEOPLE {
-            past.extend(window.observed(i).as_flattened());
-            age.push(window.quality(i).age);
-            uncertainty.push(window.quality(i).uncertainty());
-            familiarity.extend(now.familiarity(i));
-            spread.extend((0..12).filter_map(|t| now.scale(i, t)));
-            for k in 0..now.hypotheses() {
-                paths.extend(now.hypothesis(i, k).as_flattened());
-                weights.push(now.weight(i, k));
-                goals.extend(now.goal(i, k).into_iter().flatten());
-            }
-        }
-        let [past, paths, goals] = [view.past, view.paths, view.goals].map(<*const ddl_point>::cast);
-        let (first, second) = ([past, view.age, view.uncertainty, paths], [view.weights, goals]);
-        let found = first.into_iter().chain(second).chain([view.familiarity, view.spread]);
-        for (first, expected) in found.zip(&expected) {
-            // SAFETY: an array of a view of this shape, or null.
-            let found = unsafe { values(first, expected.len(), "numbers") };
-            assert!(found.is_ok_and(|found| found == *expected) && first.is_null() == expected.is_empty());
-        }
-        // SAFETY: as above.
-        let ids = unsafe { slice::from_raw_parts(view.ids, PEOPLE) };
-        assert_eq!(ids, [35, 36, 37, 38, 39, 40]);
+        is_shown(view, &now.window, &now.forecast);
     }
     ddl_live_free(Some(live));
     ddl_forecast_free(Some(forecast));
+}
+
+/// All arrays of a view have the numbers of a forecast.
+fn is_shown(view: &ddl_view, window: &Window, now: &Forecast) {
+    let mut expected = <[Vec<f64>; 8]>::default();
+    assert_eq!((view.pedestrians, view.hypotheses), (PEOPLE, now.hypotheses()));
+    let [past, age, uncertainty, paths, weights, goals, familiarity, spread] = &mut expected;
+    for i in 0..PEOPLE {
+        past.extend(window.observed(i).as_flattened());
+        age.push(window.quality(i).age);
+        uncertainty.push(window.quality(i).uncertainty());
+        familiarity.extend(now.familiarity(i));
+        spread.extend((0..12).filter_map(|t| now.scale(i, t)));
+        for k in 0..now.hypotheses() {
+            paths.extend(now.hypothesis(i, k).as_flattened());
+            weights.push(now.weight(i, k));
+            goals.extend(now.goal(i, k).into_iter().flatten());
+        }
+    }
+    let [past, paths, goals] = [view.past, view.paths, view.goals].map(<*const ddl_point>::cast);
+    let (first, second) = ([past, view.age, view.uncertainty, paths], [view.weights, goals]);
+    let found = first.into_iter().chain(second).chain([view.familiarity, view.spread]);
+    for (first, expected) in found.zip(&expected) {
+        // SAFETY: an array of a view of this shape, or null.
+        let found = unsafe { values(first, expected.len(), "numbers") };
+        assert!(found.is_ok_and(|found| found == *expected) && first.is_null() == expected.is_empty());
+    }
+    // SAFETY: as above.
+    let ids = unsafe { slice::from_raw_parts(view.ids, PEOPLE) };
+    assert_eq!(ids, [35, 36, 37, 38, 39, 40]);
 }
 
 #[test]
