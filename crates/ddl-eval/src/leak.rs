@@ -67,9 +67,71 @@ mod tests {
     use super::*;
     use crate::baseline::{ConstantAcceleration, SocialForce};
     use crate::fixture::{forecast, walk, walking, window};
+    use ddl_core::{Pace, RegionTable, Spread};
 
     struct Peeks {
         frame: usize,
+    }
+
+    /// Reveals whether the last pedestrian is apart from the first at one future frame: not if both are moved alike.
+    struct Compares {
+        frame: usize,
+    }
+
+    impl Forecaster for Compares {
+        fn name(&self) -> String {
+            "compares".to_owned()
+        }
+
+        fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+            let [first, last] = [0, window.len() - 1].map(|i| window.track(i).get(self.frame));
+            Ok(forecast(
+                window.len(),
+                &vec![walk([f64::from(u8::from(first != last)), 0.0], [0.0, 0.0]); window.len()],
+            ))
+        }
+    }
+
+    #[test]
+    fn what_is_revealed_is_named_and_every_number_counts() {
+        let still = [0.0, 0.0];
+        let three = window(&[still; 3], &[still; 3]);
+        for frame in [OBSERVED, WINDOW - 1] {
+            let named = find(&Compares { frame }, &three).unwrap().unwrap();
+            assert_eq!(named, format!("pedestrian 0 was moved at frame {}", frame + 1));
+            let all = find(&Peeks { frame }, &three).unwrap().unwrap();
+            assert_eq!(all, "every future position was moved");
+        }
+        let apart = window(&[still, still], &[still, [0.1, 0.0]]);
+        let shown = find(&Compares { frame: OBSERVED }, &apart).unwrap().unwrap();
+        assert_eq!(shown, "the future was shown at all");
+        let spread = |scale: f64| Spread {
+            scales: [vec![1.0; HORIZON - 1], vec![scale]].concat(),
+            paces: vec![Pace::Slow],
+            regions: RegionTable::of(&[&[[1.0; HORIZON]; 9]; 3], &[0.5]).unwrap().into(),
+        };
+        let with = |weight: f64, goal: f64, held: bool, familiarity: f64, scale: f64| {
+            let walks = [walk(still, still), walk(still, still)].concat();
+            let goals = vec![[0.0, 0.0], [0.0, goal]];
+            let forecast = Forecast::new(1, 2, walks, vec![weight, 1.0 - weight], Some(goals)).unwrap();
+            let forecast = forecast.with_certified(vec![true, held]).unwrap();
+            bits(
+                &forecast
+                    .with_familiarity(vec![familiarity])
+                    .unwrap()
+                    .with_spread(spread(scale))
+                    .unwrap(),
+            )
+        };
+        let all = [
+            with(0.5, 1.0, true, 0.5, 1.0),
+            with(0.25, 1.0, true, 0.5, 1.0),
+            with(0.5, 2.0, true, 0.5, 1.0),
+            with(0.5, 1.0, false, 0.5, 1.0),
+            with(0.5, 1.0, true, 0.25, 1.0),
+            with(0.5, 1.0, true, 0.5, 2.0),
+        ];
+        assert_eq!(all.iter().collect::<std::collections::BTreeSet<_>>().len(), 6);
     }
 
     impl Forecaster for Peeks {

@@ -123,6 +123,13 @@ mod tests {
             ([0.5, 0.0], [0.36, 0.0], Straight),
             ([0.5, 0.0], [0.64, 0.0], Straight),
             ([0.5, 0.0], [0.66, 0.0], SpeedingUp),
+            // Within 1 m of the last observed position, but not of the first.
+            ([0.1, 0.0], [0.05, 0.0], SlowingDown),
+            ([0.02, 0.0], [0.0, 0.09], SpeedingUp),
+            ([0.06, 0.0], [0.0, 0.09], SpeedingUp),
+            ([0.08, 0.0], [0.0, 0.09], TurningLeft),
+            ([0.5, 0.0], [0.0, -0.035], SlowingDown),
+            ([0.5, 0.0], [0.0, -0.045], TurningRight),
             // From standing, and to a stand: the direction is noise.
             ([0.0, 0.01], [0.5, 0.0], SpeedingUp),
             ([0.5, 0.0], [0.0, -0.02], SlowingDown),

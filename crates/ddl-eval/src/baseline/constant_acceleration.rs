@@ -49,33 +49,3 @@ impl Forecaster for ConstantAcceleration {
 fn length(v: Position) -> f64 {
     v[0].hypot(v[1])
 }
-
-#[cfg(test)]
-mod tests {
-    use approx::assert_relative_eq;
-
-    use super::*;
-    use crate::fixture::of_tracks;
-
-    /// The position after 12 frames, computed by hand. Steps of 1 m, the last of 0.75 m: steps of 0.5, 0.25 and 0 m
-    /// follow. Steps of 0.5 m, one of 0.6 m, the last of 0.55 m: it gets faster, bounded by 0.6 m.
-    #[test]
-    fn ends_by_hand() {
-        for (usual, (at, other), last, expected) in [
-            (1.0, (5, [1.0, 0.0]), 0.75, [7.5, 0.0]),
-            (0.5, (2, [0.6, 0.0]), 0.55, [3.65 + 12.0 * 0.6, 0.0]),
-            (0.0, (5, [0.0, 0.0]), 0.0, [0.0, 0.0]),
-        ] {
-            let mut track = vec![[0.0, 0.0]];
-            for t in 0..7 {
-                let along = if t == 6 { last } else { usual };
-                let step = if t == at { other } else { [along, 0.0] };
-                track.push([track[t][0] + step[0], track[t][1] + step[1]]);
-            }
-            let window = of_tracks(vec![track]);
-            let end = ConstantAcceleration.forecast(&window).unwrap().hypothesis(0, 0)[11];
-            assert_relative_eq!(end[0], expected[0], epsilon = 1e-9);
-            assert_relative_eq!(end[1], expected[1], epsilon = 1e-9);
-        }
-    }
-}

@@ -104,30 +104,27 @@ mod tests {
     }
 
     #[test]
-    fn the_last_step_goes_on_or_the_mean_one() {
-        let position = |rule: ConstantVelocity, t| rule.forecast(&turning()).unwrap().hypothesis(0, 0)[t];
-        assert_eq!(position(ConstantVelocity::LastStep, 0), [6.0, 4.0]);
-        assert_eq!(position(ConstantVelocity::LastStep, 11), [6.0, 26.0]);
-        let mean = position(ConstantVelocity::MeanObserved, 6);
-        assert_relative_eq!(mean[0], 12.0, epsilon = 1e-12);
-        assert_relative_eq!(mean[1], 4.0, epsilon = 1e-12);
-    }
-
-    #[test]
     fn noise_turns_but_keeps_the_speed_and_the_seed_decides() {
         let noisy = ConstantVelocity::AngularNoise { seed: 3 };
-        let forecast = noisy.forecast(&turning()).unwrap();
+        let at = |recording: &str, start: i64| {
+            let track = turning().track(0).to_vec();
+            Window::new(recording, start, 10, vec![PedestrianId(1)], vec![track]).unwrap()
+        };
+        let forecast_at = |recording, start| noisy.forecast(&at(recording, start)).unwrap();
+        let forecast = forecast_at("corridor", 30);
         assert_eq!(forecast.hypotheses(), 20);
+        assert_ne!(forecast, forecast_at("corridor", 40));
+        assert_ne!(forecast, forecast_at("yard", 30));
         let mut headings = Vec::new();
-        for k in 0..20 {
-            let end = forecast.hypothesis(0, k)[11];
+        for (start, k) in (0..100).flat_map(|start| (0..20).map(move |k| (start, k))) {
+            let end = forecast_at("corridor", start).hypothesis(0, k)[11];
             let (dx, dy) = (end[0] - 6.0, end[1] - 2.0);
             assert_relative_eq!(dx.hypot(dy), 24.0, epsilon = 1e-9);
             headings.push(dy.atan2(dx).to_degrees() - 90.0);
         }
-        let rms = (headings.iter().map(|h| h * h).sum::<f64>() / 20.0).sqrt();
-        // 20 draws: the root mean square of N(0, 25^2) lies in this range with 99.9 % probability.
-        assert!((12.0..40.0).contains(&rms), "{rms}");
+        let rms = (headings.iter().map(|h| h * h).sum::<f64>() / 2000.0).sqrt();
+        // The root mean square of 2,000 draws of N(0, 25^2) deviates by 0.4.
+        assert!((rms - 25.0).abs() < 1.6, "{rms}");
         assert_eq!(forecast, noisy.forecast(&turning()).unwrap());
         assert_ne!(
             forecast,

@@ -176,40 +176,37 @@ mod tests {
         walking(motions, 8)
     }
 
-    /// Two pedestrians meet, one overtakes, one stands. A separate Python program computed the expected positions
-    /// (first, sixth and last step), with fourth-order differences of the potential.
+    /// Two pedestrians meet, one overtakes, one stands; then a slow one is pushed to its top speed.
+    /// `tests/reference/social_force.py` computed the expected positions (first, sixth and last step), with fourth-order
+    /// differences of the potential.
     #[test]
-    fn four_pedestrians_walk_as_computed_otherwise() {
+    fn pedestrians_walk_as_computed_otherwise() {
         let meets = ([-3.5, 0.0], [0.5, 0.0]);
         let met = ([6.8, 0.3], [-0.4, 0.0]);
         let overtakes = ([-4.55, 0.35], [0.56, 0.0]);
         let stands = ([2.2, -0.9], [0.0, 0.0]);
-        let forecast = SocialForce
-            .forecast(&pedestrians(&[meets, met, overtakes, stands]))
-            .unwrap();
+        let pushed = ([1.0, -2.0], [0.03, 0.06]);
+        let others = [([0.6, -4.75], [0.06, 0.4]), ([4.0, 1.2], [-0.3, -0.1])];
+        let scenes = [&[meets, met, overtakes, stands][..], &[pushed, others[0], others[1]]];
+        let forecasts = scenes.map(|scene| SocialForce.forecast(&pedestrians(scene)).unwrap());
         let expected = [
             [[0.474_506, -0.129_691], [2.147_765, -0.658_875], [4.869_37, -0.085_545]],
             [[3.601_167, 0.300_444], [2.411_451, -0.055_36], [0.049_612, 0.255_175]],
             [[-0.074_799, 0.351_699], [2.540_464, 0.591_208], [5.858_509, 0.937_668]],
             [[2.2, -0.9], [2.2, -0.9], [2.2, -0.9]],
+            [[1.292_55, -1.591_609], [1.559_65, -1.544_855], [1.765_47, -1.214_87]],
+            [
+                [1.017_195, -1.631_743],
+                [0.485_226, -0.251_914],
+                [-0.045_555, -0.942_513],
+            ],
+            [[1.603_798, 0.406_865], [1.288_51, 0.075_426], [0.150_498, -0.346_733]],
         ];
         for (i, expected) in expected.into_iter().enumerate() {
-            let path = forecast.hypothesis(i, 0);
+            let path = forecasts[i / 4].hypothesis(i % 4, 0);
             for (t, expected) in [0, 5, 11].into_iter().zip(expected) {
-                assert!(distance(path[t], expected) < 1e-6, "{i}, {t}: {:?}", path[t]);
+                assert!(distance(path[t], expected) < 2e-6, "{i}, {t}: {:?}", path[t]);
             }
         }
-    }
-
-    #[test]
-    fn who_overtakes_gives_way_and_the_order_of_pedestrians_does_not_matter() {
-        let ahead = ([1.5, 0.0], [0.2, 0.0]);
-        let behind = ([0.0, 0.001], [0.5, 0.0]);
-        let one = SocialForce.forecast(&pedestrians(&[ahead, behind])).unwrap();
-        let other = SocialForce.forecast(&pedestrians(&[behind, ahead])).unwrap();
-        assert_eq!(one.hypothesis(0, 0), other.hypothesis(1, 0));
-        assert_eq!(one.hypothesis(1, 0), other.hypothesis(0, 0));
-        let pushed = one.hypothesis(1, 0)[11];
-        assert!(pushed[1].abs() > 0.05, "{pushed:?}");
     }
 }

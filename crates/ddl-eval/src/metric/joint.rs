@@ -143,3 +143,21 @@ fn colliding<'a>(n: usize, futures: usize, path: impl Fn(usize, usize) -> &'a [P
 fn far_apart([low, high]: [Position; 2], [other_low, other_high]: [Position; 2]) -> bool {
     (0..2).any(|c| (low[c] - other_high[c]).max(other_low[c] - high[c]) >= TOO_NEAR[0])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Three walk side by side, 0.22 to 0.5 m apart, or far apart in their second future; four stand in pairs, 0.35 m and
+    /// 0.18 m apart.
+    #[test]
+    fn who_comes_too_near_is_counted_at_each_distance_in_each_future() {
+        let along = |x: f64, y: f64| (0..12).map(|t| [x, y + 0.2 * f64::from(t)]).collect::<Vec<_>>();
+        let places = [[0.3, 0.0], [0.0, 0.1], [0.4, -0.2]];
+        let paths = places.map(|[x, y]| [along(x, y), along(50.0 * x, 40.0 * y)]);
+        let found = colliding(3, 2, |i, k| paths[i][k].as_slice());
+        assert_eq!(found, [vec![3, 0], vec![0, 0]]);
+        let standing = [[0.0, 0.0], [0.0, -0.35], [0.15, 9.0], [0.0, 9.1]];
+        assert_eq!(colliding(4, 1, |i, _| &standing[i..=i]), [vec![4], vec![2]]);
+    }
+}

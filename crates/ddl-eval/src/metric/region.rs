@@ -82,14 +82,6 @@ mod tests {
     use crate::metric::kde::kde_nll;
     use ddl_core::{Forecast, Pace, RegionTable, Spread};
 
-    #[test]
-    fn two_discs_side_by_side_are_as_large_as_one() {
-        let discs = [[0.0, 0.0], [9.0, 0.0]].map(|centre| Disc { centre, radius: 1.0 });
-        assert!((equivalent_radius(&discs) - 2.0_f64.sqrt()).abs() < 0.1);
-        assert!((equivalent_radius(&[discs[0]; 3]) - 1.0).abs() < 0.02);
-        assert!(equivalent_radius(&[]).abs() < 1e-12);
-    }
-
     /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a
     /// spread of 0.5 m its score is 0.5 - ln(0.2 / 0.8) = 1.89: inside where the quantile is 3, outside where it is
     /// 1.5.
@@ -98,12 +90,15 @@ mod tests {
         let still = [0.0, 0.0];
         let window = window(&[[10.5, 0.0]], &[still]);
         let walks = [walk(still, still), walk([10.0, 0.0], still)].concat();
-        let bare = Forecast::new(1, 2, walks, vec![0.8, 0.2], None).unwrap();
+        let bare = Forecast::new(1, 2, walks.clone(), vec![0.8, 0.2], None).unwrap();
         let scores = [vec![[1.5; HORIZON]; 10], vec![[3.0; HORIZON]; 9]].concat();
         let regions = RegionTable::of(&[&scores; 3], &[0.5, 0.9]).unwrap().into();
         let scene = ScoredWindow::new(&window, &bare).unwrap();
         assert_relative_eq!(weight_log_loss(&scene, 0).unwrap(), -(0.2_f64.ln()), epsilon = 1e-12);
         assert_eq!(RegionScores::of(&scene, 0), None);
+        let certain = Forecast::new(1, 2, walks, vec![1.0, 0.0], None).unwrap();
+        let loss = weight_log_loss(&ScoredWindow::new(&window, &certain).unwrap(), 0);
+        assert_relative_eq!(loss.unwrap(), -(1e-6_f64.ln()), epsilon = 1e-12);
         let (scales, paces) = (vec![0.5; HORIZON], vec![Pace::Standing]);
         let forecast = bare.with_spread(Spread { scales, paces, regions }).unwrap();
         let scene = ScoredWindow::new(&window, &forecast).unwrap();

@@ -99,5 +99,23 @@ mod tests {
         let log_loss = -0.5 * SMALLEST.ln();
         assert_relative_eq!(overconfident.log_loss, log_loss, epsilon = 1e-12);
         assert_eq!(Reliability::of([]), None);
+        // 11 goals in bins of 2 and one of 1, predicted and observed: 0.15 and 0.5, 0.225 and 0.5, 0.325 and 0, 0.45 and
+        // 0.5, 0.85 and 0.5, 1 and 1.
+        let sets: [(&[f64], usize); 5] = [
+            (&[0.5, 0.3, 0.2], 0),
+            (&[0.9, 0.1], 1),
+            (&[0.4, 0.35, 0.25], 2),
+            (&[0.8, 0.2], 0),
+            (&[1.0], 0),
+        ];
+        let uneven = Reliability::of(sets).unwrap();
+        for (found, by_hand) in [
+            (uneven.bins[0].predicted, 0.15),
+            (uneven.expected_error, 2.0 * (0.35 + 0.275 + 0.325 + 0.05 + 0.35) / 11.0),
+            (uneven.uniform_log_loss, 2.0 * 6.0_f64.ln() / 5.0),
+            (uneven.log_loss, -(0.5 * 0.1 * 0.25 * 0.8_f64).ln() / 5.0),
+        ] {
+            assert_relative_eq!(found, by_hand, epsilon = 1e-12);
+        }
     }
 }

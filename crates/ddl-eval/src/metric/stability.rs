@@ -112,3 +112,20 @@ pub(crate) fn rollouts(scene: &ScoredWindow<'_>) -> Vec<RolloutStability> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Back and forth by 0.4 mm at the start and at the goal, which has no direction.
+    #[test]
+    fn a_step_without_a_direction_has_no_turn() {
+        let path = [[-4e-4, 0.0], [1.0, 1.5], [2.0, 3.0], [2.0004, 3.0], [1.0, 1.5]];
+        let found = RolloutStability::of([0.0, 0.0], &path[..4], [2.0, 3.0]);
+        assert!(found.largest_turn < 0.1 && !found.decreasing, "{found:?}");
+        assert!((found.end_distance - 4e-4).abs() < 1e-9);
+        let found = RolloutStability::of([0.0, 0.0], &path[1..4], [2.0, 3.0]);
+        assert!(found.decreasing && found.largest_turn < 0.1, "{found:?}");
+        assert!(!RolloutStability::of([0.0, 0.0], &path[1..], [2.0, 3.0]).decreasing);
+    }
+}

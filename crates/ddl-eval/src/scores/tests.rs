@@ -1,39 +1,7 @@
 //! Scores of whole test sets, by hand, and what is refused.
 
-use approx::assert_relative_eq;
-
 use super::*;
 use crate::fixture::{forecast, walk, window};
-
-#[test]
-fn means_are_over_pedestrians() {
-    let (still, far) = ([0.0, 0.0], [[0.0, 0.0], [5.0, 0.0], [9.0, 0.0]]);
-    let windows = [window(&[still], &[still]), window(&far, &[still; 3])];
-    let forecasts = [
-        forecast(1, &[walk([1.0, 0.0], still)]),
-        forecast(3, &far.map(|end| walk(end, still))),
-    ];
-    let scores = Scores::evaluate(&windows, &forecasts).unwrap();
-    assert_eq!((scores.pedestrians, scores.windows), (4, 2));
-    let errors = [scores.min_ade, scores.min_fde, scores.fde_at_min_ade];
-    for mean in [&errors[..], &[scores.joint_ade, scores.miss_rate]].concat() {
-        assert_relative_eq!(mean, 0.25);
-    }
-    assert_eq!((scores.goal_fde, scores.stability), (None, None));
-    assert_eq!(scores.joint, None);
-    let scores = Scores::under(Protocol::Joint, &windows, &windows, &forecasts).unwrap();
-    let [ade, fde] = scores.errors(Protocol::Joint);
-    // Over windows the errors of 1 m and 0 m count equally.
-    let joint = scores.joint.unwrap();
-    for (mean, by_hand) in [
-        (ade, 0.25),
-        (fde, 0.25),
-        (joint.ade_windows, 0.5),
-        (joint.fde_windows, 0.5),
-    ] {
-        assert_relative_eq!(mean, by_hand);
-    }
-}
 
 #[test]
 fn what_does_not_belong_together_is_refused() {
@@ -65,6 +33,16 @@ fn what_does_not_belong_together_is_refused() {
         of_window(&windows[..1], &[pair]),
         WindowProblem::Pedestrians { expected, found }
     );
+    let tracks = || vec![windows[0].track(0).to_vec()];
+    let full = |name: &str, start| Window::new(name, start, 10, windows[0].pedestrians().to_vec(), tracks()).unwrap();
+    for (full, fits) in [
+        (full("made up", 0), true),
+        (full("other", 0), false),
+        (full("made up", 9), false),
+    ] {
+        let scored = Scores::under(Protocol::Fair, &windows[..1], &[full], std::slice::from_ref(&one));
+        assert_eq!(scored.is_ok(), fits);
+    }
     let ahead = [windows[0].without_future()];
     assert_eq!(of_window(&ahead, std::slice::from_ref(&one)), WindowProblem::NoFuture);
     assert_eq!(

@@ -105,28 +105,7 @@ fn percentile(sorted: &[f64], share: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use approx::assert_relative_eq;
-
     use super::*;
-    use crate::significance::blocks::blocks_of;
-
-    fn blocks(errors: &[f64]) -> Vec<BlockErrors> {
-        blocks_of(10, errors)
-    }
-
-    /// 40 blocks, half of error 0 and half of error 1: the mean of a resample is binomial, 0.5 with the deviation
-    /// sqrt(0.25 / 40) = 0.0791, so that 95 % lie within 0.5 -+ 1.96 * 0.0791 = [0.345, 0.655].
-    #[test]
-    fn the_interval_is_that_of_the_binomial_distribution() {
-        let errors: Vec<f64> = (0..40).map(|i| f64::from(i % 2)).collect();
-        let fold = blocks(&errors);
-        let interval = mean_interval(&[&fold], |block| block.min_ade).unwrap();
-        assert_relative_eq!(interval.mean, 0.5, epsilon = 1e-12);
-        assert_relative_eq!(interval.low, 0.345, epsilon = 0.011);
-        assert_relative_eq!(interval.high, 0.655, epsilon = 0.011);
-        let twice = mean_interval(&[&fold], |block| block.min_fde).unwrap();
-        assert_relative_eq!(twice.low, 2.0 * interval.low, epsilon = 1e-12);
-    }
 
     /// The values of numpy.percentile.
     #[test]
@@ -138,19 +117,5 @@ mod tests {
             assert_eq!(percentile(&sorted, share), expected, "{share}");
         }
         assert_eq!(percentile(&[3.0], 0.975), 3.0);
-    }
-
-    #[test]
-    fn folds_count_alike_and_are_resampled_apart() {
-        let errors: Vec<f64> = (0..40).map(|i| f64::from(i % 2)).collect();
-        let (low, high) = (
-            blocks(&errors),
-            blocks(&errors.iter().map(|e| e + 2.0).collect::<Vec<_>>()),
-        );
-        let one = mean_interval(&[&low], |block| block.min_ade).unwrap();
-        let two = mean_interval(&[&low, &high], |block| block.min_ade).unwrap();
-        assert_relative_eq!(two.mean, 1.5, epsilon = 1e-12);
-        let ratio = (one.high - one.low) / (two.high - two.low);
-        assert_relative_eq!(ratio, std::f64::consts::SQRT_2, epsilon = 0.1);
     }
 }

@@ -70,6 +70,7 @@ mod tests {
 
     use super::*;
     use crate::significance::blocks::blocks_of;
+    use crate::significance::mean_interval;
 
     fn blocks(errors: &[f64]) -> Vec<BlockErrors> {
         blocks_of(4, errors)
@@ -80,17 +81,6 @@ mod tests {
         paired_difference(&[&a], &[&b], |block| block.min_ade).unwrap()
     }
 
-    /// Every one of ten blocks is better by the same 0.1 m: of the 1,024 patterns of signs, two are as extreme.
-    #[test]
-    fn a_difference_in_every_block_is_hardly_chance() {
-        let second: Vec<f64> = (0..10).map(|i| 0.3 + 0.1 * f64::from(i)).collect();
-        let first: Vec<f64> = second.iter().map(|error| error - 0.1).collect();
-        let compared = compare(&first, &second);
-        assert_relative_eq!(compared.difference.mean, -0.1, epsilon = 1e-12);
-        assert_relative_eq!(compared.difference.low, -0.1, epsilon = 1e-12);
-        assert_relative_eq!(compared.p_value, 2.0 / 1024.0, epsilon = 1.5e-3);
-    }
-
     #[test]
     fn swapping_the_two_changes_the_sign_alone() {
         let (a, b) = ([0.2, 0.4, 0.3, 0.6, 0.1], [0.3, 0.3, 0.5, 0.6, 0.4]);
@@ -99,6 +89,45 @@ mod tests {
         assert_relative_eq!(there.difference.mean, -back.difference.mean);
         assert_relative_eq!(there.difference.low, -back.difference.high, epsilon = 1e-12);
         assert_relative_eq!(there.p_value, back.p_value);
+    }
+
+    /// Blocks of 1 to 7 pedestrians, 10 of one fold and 14 of another. `tests/reference/significance.py` prints the
+    /// numbers; the p-value is that of all 2^24 patterns.
+    #[test]
+    fn uneven_blocks_of_two_folds_are_compared_as_computed_elsewhere() {
+        let folds = |error: fn(f64, f64) -> f64| {
+            [(0.0, 10_i64), (1.0, 14)].map(|(fold, count)| -> Vec<BlockErrors> {
+                let block = |block: i64| {
+                    let pedestrians = (1 + 3 * block % 7) as usize;
+                    BlockErrors {
+                        block,
+                        min_fde: pedestrians as f64 * error(block as f64, fold),
+                        ..blocks_of(pedestrians, &[0.0]).remove(0)
+                    }
+                };
+                (0..count).map(block).collect()
+            })
+        };
+        let first = folds(|b, fold| 0.1 * (5.0 * b % 11.0) + 0.2 * fold);
+        let second = folds(|b, fold| 0.07 * (3.0 * b % 13.0) + 0.1 * fold);
+        let (first, second) = (
+            first.each_ref().map(Vec::as_slice),
+            second.each_ref().map(Vec::as_slice),
+        );
+        let compared = paired_difference(&first, &second, |block| block.min_fde).unwrap();
+        let mean = mean_interval(&first, |block| block.min_fde).unwrap();
+        for (found, mean, [low, high]) in [
+            (mean, 0.681_785_714_285_714_2, [0.5046, 0.8367]),
+            (compared.difference, 0.224_035_714_285_714_25, [0.0675, 0.3729]),
+        ] {
+            assert_relative_eq!(found.mean, mean, epsilon = 1e-12);
+            assert_relative_eq!(found.low, low, epsilon = 0.006);
+            assert_relative_eq!(found.high, high, epsilon = 0.006);
+        }
+        assert_relative_eq!(compared.p_value, 0.0149, epsilon = 0.004);
+        // No pattern drawn is as extreme: the observed one counts.
+        let surely = compare(&[0.1; 40], &[0.2; 40]).p_value;
+        assert_relative_eq!(surely, 1.0 / 10_001.0, epsilon = 1e-12);
     }
 
     #[test]

@@ -4,5 +4,5 @@
 
 mod external;
 mod generated;
-mod hand_example;
 mod laws;
+mod reference;

@@ -1,6 +1,5 @@
 # Writes distribution.json: log densities of scipy.stats.gaussian_kde with weights (scipy 1.17.1), and
 # Mahalanobis distances and largest eigenvalues with numpy 2.4.6. `python3 distribution.py` in this folder.
-# Also prints the numbers of the hand example (tests/it/hand_example.rs).
 import json
 
 import numpy as np
@@ -63,22 +62,4 @@ def cases():
     yield case([[0.0, 0.0], [0.001, 0.0], [0.0, 0.002]], [0.2, 0.3, 0.5], [0.01, 0.02])
 
 
-def hand_example():
-    # Offsets from the truth of the two hypotheses of A, B and C at the frames 1 to 12, and their weights.
-    frames = range(1, 13)
-    a = [([0.24, 0.32], [0.06 * t, 0.08 * t]) for t in frames]
-    b = [([0.15 * t, -0.2 * t], [0.9, -1.2]) for t in frames]
-    c = [([0.72, 0.96], [1.28, -0.96] if t < 12 else [0.0, 0.0]) for t in frames]
-    nll, distances, covariances = [], [], []
-    for offsets, weights in ((a, [0.75, 0.25]), (b, [0.2, 0.8]), (c, [0.6, 0.4])):
-        for pair in offsets:
-            nll.append(-max(log_density(pair, weights, [0.0, 0.0]), -20.0))
-            distance, covariance = spread(pair, weights, [0.0, 0.0])
-            distances.append(distance)
-            covariances.append(covariance)
-    amv = np.linalg.eigvalsh(np.mean(covariances, axis=0)).max()
-    return np.mean(nll), np.mean(distances), amv
-
-
 json.dump(dict(cases=list(cases())), open("distribution.json", "w"), indent=1)
-print("hand example, KDE NLL, AMD, AMV:", *(repr(float(c)) for c in hand_example()))

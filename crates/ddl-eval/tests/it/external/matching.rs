@@ -286,5 +286,13 @@ fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
         assert!(complaint.contains(expected), "{complaint}");
         assert!(complaint.starts_with("f: half of the forecasts start "));
     }
-    assert!(measure(&file([9.9, 0.0], [9.8, 2.0], [9.5, 2.5])).is_ok());
+    // One of three is far off, or all by 4 m; or only the less likely hypotheses, which come first.
+    assert!(measure(&file([9.9, 0.0], [9.8, 2.0], [90.0, 2.5])).is_ok());
+    assert!(measure(&file([13.6, 0.0], [13.6, 2.0], [13.6, 2.5])).is_err());
+    let both = |y: f64| {
+        let [far, near] = [[90.0, y], [9.5, y]].map(|at| hypothesis(at).replacen('{', "{\"weight\":W,", 1));
+        far.replace('W', "0.25") + "," + &near.replace('W', "0.75")
+    };
+    let weighted = line(70, 3, &both(0.0)) + &line(70, 5, &both(2.0)) + &line(80, 5, &both(2.5));
+    assert!(measure(&weighted).is_ok());
 }
