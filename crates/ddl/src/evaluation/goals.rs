@@ -131,3 +131,24 @@ pub fn evaluate_goals(
         seconds,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_goal::HeadingFrame;
+
+    /// Goals at (3, 1) and (0, -3), the first more likely. The ends are 5 m and 3 m from it, and 0 m and 3 m from the
+    /// nearest.
+    #[test]
+    fn errors_by_hand() {
+        let frame = HeadingFrame::new(&[[-1.0, 0.0], [0.0, 0.0]]).unwrap();
+        let set = GoalSet::from_endpoints(&frame, &[[0.0, -3.0], [3.0, 1.0]], &[0.4, 0.6], 2).unwrap();
+        let errors = GoalErrors::of([(&set, [0.0, -3.0]), (&set, [3.0, 4.0])].into_iter());
+        assert_eq!(errors.pedestrians, 2);
+        assert!(
+            (errors.oracle_fde - 1.5).abs() < 1e-12 && (errors.likeliest_fde - 4.0).abs() < 1e-12,
+            "{errors:?}"
+        );
+        assert_eq!(GoalErrors::of([].into_iter()), GoalErrors::default());
+    }
+}

@@ -251,3 +251,83 @@ fn no_flow(variant: Variant) -> ForecastError {
 fn failed(error: CertificateError) -> ForecastError {
     ForecastError::model(NAME, error)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_data::{ObservationQuality, PedestrianId};
+
+    /// Two pedestrians, the second badly observed, with two goals each; no part of the network is used.
+    #[test]
+    fn each_path_and_certificate_and_spread_is_of_its_own_pair() {
+        let track = |x: f64, y: f64, step: f64| (0..8).map(|t| [x, y + step * f64::from(t)]).collect();
+        let ids = vec![PedestrianId(4), PedestrianId(2)];
+        let window = Window::new("yard", 30, 6, ids, vec![track(0.0, 1.0, 0.4), track(9.0, 5.0, -0.3)]).unwrap();
+        let uncertain = ObservationQuality {
+            deviation: 0.3,
+            velocity_deviation: 0.2,
+            ..ObservationQuality::default()
+        };
+        let window = window.with_qualities(vec![ObservationQuality::default(), uncertain]);
+        let config = StarConfig::published(Variant::Full);
+        let goals = vec![[0.5, 8.0], [-2.0, 7.0], [9.0, -1.0], [7.0, 0.0]];
+        let away: Vec<Position> = (1..=HORIZON).map(|t| [9.0, 2.9 + 0.3 * t as f64]).collect();
+        let walked = |rule: StepRule, rolled_out: Vec<Position>| Walked {
+            config: &config,
+            rule,
+            window: &window,
+            hypotheses: 2,
+            rolled_out,
+            factors: Some(vec![[1.0, 0.0, 1.0]; 4 * HORIZON]),
+            shares: vec![0.0; 2],
+            familiarity: Some(vec![0.5, 0.25]),
+            spread: None,
+            weights: vec![0.75, 0.25, 0.4, 0.6],
+            goals: goals.clone(),
+        };
+        let made = walked(StepRule::Bounded, Vec::new()).certified().unwrap();
+        assert_eq!(made.first_violation(), None);
+        assert_eq!(made.forecast, walked(StepRule::Bounded, Vec::new()).forecast().unwrap());
+        let calibration = Calibration::fitted();
+        for i in 0..2 {
+            let own = 2 * i..2 * i + 2;
+            let weights = own
+                .clone()
+                .map(|pair| made.forecast.weight(i, pair % 2))
+                .collect::<Vec<_>>();
+            let spread = calibration.spread(
+                Pace::Walking,
+                window.observed(i),
+                &goals[own],
+                &weights,
+                config.time_step,
+            );
+            for t in 0..HORIZON {
+                let added = if i == 0 {
+                    0.0
+                } else {
+                    f64::hypot(0.3, 0.2 * 0.4 * (t + 1) as f64)
+                };
+                assert!((made.forecast.scale(i, t).unwrap() - spread[t].hypot(added)).abs() < 1e-12);
+            }
+            for k in 0..2 {
+                let [x, y] = made.forecast.hypothesis(i, k)[HORIZON - 1];
+                let goal = goals[2 * i + k];
+                assert!((x - goal[0]).hypot(y - goal[1]) < 0.05, "{i} {k}: {x} {y}");
+            }
+        }
+        // With plain steps the paths are those of the network: one of them leads away from its goal.
+        let mut paths: Vec<Position> = (0..4)
+            .flat_map(|k| made.forecast.hypothesis(k / 2, k % 2).to_vec())
+            .collect();
+        paths[2 * HORIZON..3 * HORIZON].copy_from_slice(&away);
+        let led_away = walked(StepRule::Euler, paths).certified().unwrap();
+        assert_eq!(led_away.forecast.hypothesis(1, 0), away);
+        assert_eq!(led_away.forecast.certified(1, 0), Some(false));
+        assert!(led_away.certificate(1, 0).verify().is_err() && led_away.certificate(0, 1).verify().is_ok());
+        assert!(
+            led_away.first_violation().is_some_and(|(i, k, _)| (i, k) == (1, 0)),
+            "{led_away:?}"
+        );
+    }
+}

@@ -88,11 +88,11 @@ mod tests {
 
     fn approach() -> Approach {
         Approach {
-            start: [0.0, 0.0],
-            goal: [3.0, 0.0],
+            start: [1.0, -2.0],
+            goal: [2.8, -4.4],
             sigma: 1e-8,
             time_step: 0.5,
-            bounds: MotionBounds::new(2.15, Vector2::new(0.5, 0.0), 1.0).unwrap(),
+            bounds: MotionBounds::new(2.15, Vector2::new(0.3, -0.4), 1.0).unwrap(),
         }
     }
 
@@ -102,8 +102,8 @@ mod tests {
         let approach = approach();
         let walk = approach.walk(&[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
         for (t, position) in (1..).zip(walk.positions) {
-            let x = 0.25 * f64::from(t);
-            assert!((position[0] - x).abs() < 1e-7 && position[1].abs() < 1e-12);
+            let [x, y] = [1.0 + 0.15 * f64::from(t), -2.0 - 0.2 * f64::from(t)];
+            assert!((position[0] - x).abs() < 1e-7 && (position[1] - y).abs() < 1e-7);
         }
         assert_eq!(walk.certificate.verify(), Ok(()));
         let motion = walk.certificate.motion().unwrap();

@@ -27,22 +27,32 @@ pub(crate) fn add(proposed: &mut ProposedEndpoints, share: f64, observed: &[Posi
 mod tests {
     use super::*;
 
-    /// At 1 m/s a pedestrian would come 4.8 m far.
+    /// A curve: 1.5 m in the last three steps of 0.5 s, so 6 m in twelve. A slow pedestrian turns away at 0.3 m/s.
     #[test]
     fn endpoints_of_a_pedestrian_by_hand() {
-        let observed = std::array::from_fn(|t| [0.4 * (t as f64 - 7.0), 0.0]);
+        let observed = std::array::from_fn(|t| [0.3 * (t as f64 - 7.0), 0.4 * (t.max(4) as f64 - 7.0)]);
         let mut proposed = ProposedEndpoints {
             endpoints: vec![[4.8, 0.0]],
             weights: vec![0.5],
         };
-        add(&mut proposed, 0.01, &observed, 0.4);
-        let expected = [[4.8, 0.0], [0.0, 0.0], [0.0, 2.88], [0.0, -2.88], [-2.4, 0.0]];
+        add(&mut proposed, 0.01, &observed, 0.5);
+        let weights = proposed.weights.clone();
+        add(&mut proposed, 0.01, &[[2.0, 1.0]; OBSERVED], 0.5);
+        let expected = [
+            [4.8, 0.0],
+            [0.0, 0.0],
+            [0.0, 3.6],
+            [0.0, -3.6],
+            [-3.0, 0.0],
+            [0.0, 0.0],
+            [0.0, 1.08],
+        ];
         for (found, expected) in proposed.endpoints.iter().zip(expected) {
             assert!(
                 (found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-12,
                 "{found:?}"
             );
         }
-        assert_eq!(proposed.weights, [0.5, 0.005, 0.005, 0.005, 0.005]);
+        assert_eq!(weights, [0.5, 0.005, 0.005, 0.005, 0.005]);
     }
 }

@@ -138,3 +138,36 @@ fn ensure_writable(path: &Path) -> std::io::Result<()> {
     tempfile::tempfile_in(folder.unwrap_or(Path::new(".")))?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::place_memory::tests::{memory, model, seen_after};
+
+    #[test]
+    fn only_a_memory_of_this_place_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("gate.memory");
+        let model = model();
+        let (mut file, none) = MemoryFile::open(&path).unwrap();
+        let nothing = seen_after(&model, SceneMemory::new(3, 9_000).unwrap(), &[]);
+        file.write(&nothing).unwrap();
+        assert!(none.is_none() && !path.exists() && !file.is_due());
+        let given = memory(55);
+        let accepted = seen_after(&model, given.clone(), &[(5, 0.0)]);
+        assert_eq!(file.end(accepted.clone()).unwrap(), None);
+        assert_eq!(&SceneMemory::read(&path).unwrap(), accepted.memory());
+        let before = std::fs::read(&path).unwrap();
+        for (strangers, words) in [(30, "give another file"), (2, "2 pedestrians were observed")] {
+            let place = seen_after(&model, given.clone(), &[(strangers, 9.0)]);
+            file.write(&place).unwrap();
+            let told = file.end(place).unwrap().unwrap();
+            assert!(told.contains(words) && told.contains("gate.memory"), "{told}");
+            assert_eq!(std::fs::read(&path).unwrap(), before);
+        }
+        // Not one of five of these is alike, but one of two: the end decides.
+        let decided = seen_after(&model, given, &[(1, 9.0), (1, 0.0)]);
+        assert_eq!(file.end(decided).unwrap(), None);
+        assert_ne!(std::fs::read(&path).unwrap(), before);
+    }
+}

@@ -158,47 +158,93 @@ impl Trial {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::run::builtin_model::BuiltinModel;
-    use ddl_data::{Dataset, LiveTracks};
+    use ddl_data::ObservationQuality;
     use ddl_network::DeviceChoice;
 
-    /// A few pedestrians without similar trajectories do not show that the memory belongs to another place.
-    #[test]
-    fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
-        let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
-        let dataset = Dataset::simulated(1);
-        let corridor = dataset.recording("corridor").unwrap();
-        let seen = |frame: i64, by: f64| -> Vec<(PedestrianId, Position)> {
-            let here = corridor.at(frame).iter();
-            here.map(|seen| (seen.pedestrian, seen.position.map(|x| x + by)))
-                .collect()
-        };
-        let mut memory = SceneMemory::new(corridor.frame_step(), SceneMemory::DEFAULT_CAPACITY).unwrap();
-        for &frame in &corridor.frames()[..300] {
-            memory.observe(frame, seen(frame, 0.0)).unwrap();
+    pub(crate) fn model() -> Ddl {
+        Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap()
+    }
+
+    fn position(t: i64, lane: f64) -> Position {
+        [0.5 * t as f64, 0.2 * t as f64 + lane]
+    }
+
+    /// 55 pedestrians on one lane, one after another, with 10 segments each; three frames make a step.
+    pub(crate) fn memory(pedestrians: i64) -> SceneMemory {
+        let mut memory = SceneMemory::new(3, 9_000).unwrap();
+        for t in 0..29 * pedestrians {
+            let row = (PedestrianId(t / 29), position(t % 29, 0.0));
+            memory.observe(3 * t, [row]).unwrap();
         }
-        let tried = |by: f64, steps: usize| {
-            let mut place = PlaceMemory::new(&model, memory.clone()).unwrap();
-            let mut tracks = LiveTracks::with_frame_step(corridor.frame_step()).unwrap();
-            for &frame in &corridor.frames()[..steps] {
-                tracks = tracks.after(frame, seen(frame, by)).unwrap();
-                place
-                    .observe(frame, seen(frame, by), &[], tracks.window().as_ref())
-                    .unwrap();
+        memory
+    }
+
+    /// The memory of a place after so many pedestrians on each lane, so far (m) from that of the memory.
+    pub(crate) fn seen_after(model: &Ddl, memory: SceneMemory, lanes: &[(i64, f64)]) -> PlaceMemory {
+        let mut place = PlaceMemory::new(model, memory).unwrap();
+        let lanes = lanes.iter().flat_map(|&(count, lane)| vec![lane; count as usize]);
+        for (id, lane) in (0..).zip(lanes) {
+            let (ids, track) = (vec![PedestrianId(id)], (0..8).map(|t| position(t, lane)).collect());
+            let window = Window::new("live", 99 * id, 3, ids, vec![track]).unwrap();
+            let unseen = ObservationQuality {
+                unseen: 1,
+                ..ObservationQuality::default()
+            };
+            // Counted once, and not before it was seen for 8 steps.
+            let partial = window.clone().with_qualities(vec![unseen]);
+            for (later, window) in [(0, None), (1, Some(&partial)), (2, Some(&window)), (3, Some(&window))] {
+                let row = [(PedestrianId(id), position(7, lane))];
+                place.observe(99 * id + later, row, &[], window).unwrap();
             }
-            place
-        };
-        let mut elsewhere = tried(500.0, 9);
-        let few = elsewhere.under_test().unwrap();
-        assert!((1..13).contains(&few), "{few}");
-        elsewhere.finish_test();
-        assert_eq!(elsewhere.under_test(), Some(few));
-        assert_eq!(elsewhere.refused(), None);
-        // In its own place it is accepted before 30 pedestrians were seen.
-        let accepted = (9..120).find(|&steps| tried(0.0, steps).under_test().is_none());
-        let seen = tried(500.0, accepted.unwrap()).under_test();
-        assert!(seen.is_some_and(|seen| (5..30).contains(&seen)), "{seen:?}");
+        }
+        place
+    }
+
+    /// Tracks less than 2 m apart are alike. 5 of 30 pedestrians are more than 15 %, 4 are not; fewer than 13 refuse nothing.
+    #[test]
+    fn a_memory_is_refused_and_accepted_by_the_share_of_pedestrians_alike() {
+        let (model, given) = (model(), memory(55));
+        assert_eq!(given.segments(), 550);
+        let other = |alike, tried| Some(format!("only {alike} of {tried} pedestrians"));
+        for (lanes, finished, tested, refused) in [
+            (&[(30, 2.3)][..], false, None, other(0, 30)),
+            (&[(26, -2.3), (4, 1.95)], false, None, other(4, 30)),
+            (&[(25, 2.3), (4, -1.95)], false, Some(29), None),
+            (&[(25, 2.3), (5, -1.95)], false, None, None),
+            (&[(4, 1.95)], false, Some(4), None),
+            (&[(5, 1.95)], false, None, None),
+            (&[(12, 2.3)], true, Some(12), None),
+            (&[(13, 2.3)], true, None, other(0, 13)),
+            (&[(6, 2.3), (1, 1.95)], true, Some(7), None),
+            (&[(5, 2.3), (1, 1.95)], true, None, None),
+            (&[], true, Some(0), None),
+        ] {
+            let mut place = seen_after(&model, given.clone(), lanes);
+            if finished {
+                place.finish_test();
+            }
+            assert_eq!(place.under_test(), tested, "{lanes:?}");
+            let reason = place.refused().unwrap_or_default();
+            assert_eq!(place.refused().is_some(), refused.is_some(), "{lanes:?} {reason}");
+            assert!(reason.contains(&refused.clone().unwrap_or_default()), "{reason}");
+            // Who was seen is remembered, unless the memory is of another place: then it begins anew.
+            let (seen, summary) = (
+                lanes.iter().map(|lane| lane.0).sum::<i64>() as u64,
+                place.memory().summary(),
+            );
+            let expected = if refused.is_some() {
+                (0, u64::from(!finished))
+            } else {
+                (550, 55 + seen)
+            };
+            assert_eq!((summary.segments, summary.pedestrians), expected, "{lanes:?}");
+            assert_eq!(place.memory().empty_copy(), given.empty_copy());
+        }
+        // Too few segments to be tested.
+        assert_eq!(seen_after(&model, memory(49), &[]).under_test(), None);
+        assert_eq!(seen_after(&model, memory(50), &[]).under_test(), Some(0));
     }
 }

@@ -83,3 +83,63 @@ impl Watch {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::place_memory::tests::model;
+    use ddl_data::{Clock, OBSERVED};
+
+    /// A camera of 7 frames a second: 2.8 frames, or 14 ticks, make a step.
+    #[test]
+    fn the_memory_holds_the_rows_of_the_tracks() {
+        let model = model();
+        let clock = Clock::with_frame_time(1.0 / 7.0).unwrap();
+        let mut watch = Watch::new(LiveTracks::with_clock(clock));
+        let other = watch.remember(&model, Some(SceneMemory::new(3, 9).unwrap()));
+        let (camera, memory) = (14, 3);
+        assert!(matches!(other, Err(DdlError::MemoryFrameStep { camera: c, memory: m }) if (c, m) == (camera, memory)));
+        watch.remember(&model, None).unwrap();
+        // The first pedestrian has an impossible row; the second walks on 2 m aside, as if it were another one.
+        let rows = |frame: i64| {
+            let along = 0.17 * frame as f64;
+            let [wrong, aside] = [frame == 20, frame >= 62].map(|holds| if holds { 2.0 } else { 0.0 });
+            vec![
+                (PedestrianId(1), [along, 30.0 * wrong]),
+                (PedestrianId(2), [along, 2.0 + aside]),
+            ]
+        };
+        let memory_of = |watch: &Watch| watch.place.as_ref().unwrap().memory().clone();
+        let push = |watch: &mut Watch, frame| watch.push(frame, rows(frame), |_| Ok::<_, DdlError>(())).unwrap();
+        for frame in 0..125 {
+            push(&mut watch, frame);
+        }
+        let summary = memory_of(&watch).summary();
+        assert_eq!((summary.frames, summary.pedestrians, summary.tracks), (125, 2, 2));
+        assert!((summary.seconds - 124.0 / 7.0).abs() < 1e-9, "{summary:?}");
+        let [_, high] = summary.extent.unwrap();
+        assert!((high[1] - 4.0).abs() < 1e-9, "the impossible row is not remembered");
+        let tracks: Vec<Vec<Position>> = memory_of(&watch).tracks().collect();
+        assert!(tracks[0].iter().all(|[_, y]| y.abs() < 1e-9), "{tracks:?}");
+        let on = |lane: f64| tracks[1].iter().filter(|[_, y]| (y - lane).abs() < 1e-9).count();
+        assert!(
+            on(2.0) > 8 && on(4.0) > 8 && on(2.0) + on(4.0) == tracks[1].len(),
+            "{tracks:?}"
+        );
+        // An error changes nothing. What a window recalls was observed before its last frame.
+        let before = (watch.tracks.clone(), memory_of(&watch));
+        let failed: Result<Option<(Window, ())>, _> = watch.push(125, rows(125), |_| Err(DdlError::Interrupted));
+        assert!(failed.is_err() && (watch.tracks.clone(), memory_of(&watch)) == before);
+        let (window, ()) = push(&mut watch, 125).unwrap();
+        let count = model.goal_model().recalled_per_pedestrian().unwrap();
+        for (i, &id) in window.pedestrians().iter().enumerate() {
+            let observed: &[Position; OBSERVED] = window.observed(i).first_chunk().unwrap();
+            assert_eq!(window.remembered(i), before.1.recall(observed, Some(id), count));
+            assert_eq!(window.remembered(i).len(), 1);
+        }
+        // A restarted tracker counts from 0, and its pedestrians are others.
+        watch.clear();
+        push(&mut watch, 0);
+        assert_eq!(memory_of(&watch).summary().pedestrians, 4);
+    }
+}

@@ -40,3 +40,41 @@ impl UnfamiliarMotions {
         ))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_core::Forecast;
+    use ddl_data::{Clock, FrameNumber, PedestrianId, SceneName, Window};
+
+    /// 7 frames a second: 5 ticks a frame, 14 a step. The window ends at tick 7 * 14 + 70 = 168, frame 33.6, after 4.8 s.
+    #[test]
+    fn moments_count_frames_and_the_unfamiliar_are_told_once() {
+        let clock = Clock::with_frame_time(1.0 / 7.0).unwrap();
+        let ids = vec![PedestrianId(4), PedestrianId(2)];
+        let window = Window::new("yard", 70, 14, ids, vec![vec![[0.0, 1.0]; 8]; 2]).unwrap();
+        let forecast = Forecast::with_equal_weights(2, 1, vec![[0.0; 2]; 24]).unwrap();
+        let forecast = forecast.with_familiarity(vec![0.010_1, 0.009_9]).unwrap();
+        let hall = SceneName::new("hall").unwrap();
+        let moment = Moment {
+            scene: Some(&hall),
+            ..Moment::new(&window, &forecast, clock)
+        };
+        assert_eq!(
+            (moment.microseconds(), moment.observed_until()),
+            (4_800_000, FrameNumber::Between(33.6))
+        );
+        let frames = moment.frames();
+        assert_eq!(
+            (frames.len(), frames[0], frames[4]),
+            (12, FrameNumber::Between(36.4), FrameNumber::Between(47.6))
+        );
+        let mut motions = UnfamiliarMotions::default();
+        motions.add(&[moment, moment]);
+        let told = motions.warning().unwrap();
+        assert!(
+            told.contains("2 of 4 motions") && told.contains("pedestrian 2 of scene hall observed until frame 33.6")
+        );
+        assert_eq!(motions.warning(), None);
+    }
+}

@@ -137,6 +137,7 @@ fn deviation(positions: &[Position], weights: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ddl_goal::HeadingFrame;
 
     #[test]
     fn the_constants_can_be_read_and_are_in_range() {
@@ -150,20 +151,45 @@ mod tests {
         }
     }
 
-    /// Endpoints 3 m to either side: a deviation of 3 m along one axis and 0 along the other, so sqrt(9 / 2).
+    /// 1 m/s along a diagonal. The mean of the goals is (4, 1), and 7 m^2 the sum of their variances along x and y. With
+    /// the trust 0.75 / (0.75 + 0.25) the power of the weights is 0.5 + 0.75 * 2 = 2: 0.25, 0.09 and 0.04 of 0.38.
     #[test]
-    fn spread_of_two_opposite_endpoints() {
+    fn spread_weights_and_shares_by_hand() {
         let mut calibration = Calibration {
-            least_spread: 0.0,
-            spread_growth: 1.0,
+            half_trust: 0.25,
+            share: 0.8,
+            least_spread: 0.3,
+            spread_growth: 0.5,
             ..Calibration::fitted().clone()
         };
-        calibration.paces.walking.spread_of_speed = 0.1;
-        calibration.paces.walking.spread_of_goals = 0.2;
-        let observed: Vec<Position> = (0..8).map(|t| [0.8 * f64::from(t), 0.0]).collect();
-        let goals = [[5.0, 3.0], [5.0, -3.0]];
-        let spread = calibration.spread(Pace::Walking, &observed, &goals, &[0.5, 0.5], 0.4);
-        let at_end = 0.1 * 2.0 + 0.2 * 4.5_f64.sqrt();
-        assert!((spread[11] - at_end).abs() < 1e-12 && (spread[5] - at_end / 2.0).abs() < 1e-12);
+        let OfPaces {
+            standing,
+            slow,
+            walking,
+        } = &mut calibration.paces;
+        for (of_pace, speed) in [(standing, 1.0), (slow, 2.0), (walking, 0.1)] {
+            of_pace.spread_of_speed = speed;
+            of_pace.spread_of_goals = 0.2;
+            (of_pace.weight_power, of_pace.uniform_share) = ([0.5, 2.5], 0.1 * speed);
+        }
+        let observed: Vec<Position> = (0..8).map(|t| [0.3 * f64::from(t), 2.0 - 0.4 * f64::from(t)]).collect();
+        let (goals, weights) = ([[5.0, 3.0], [5.0, -1.0], [1.0, -1.0]], [0.5, 0.25, 0.25]);
+        let frame = HeadingFrame::new(&observed).unwrap();
+        let set = GoalSet::from_endpoints(&frame, &goals, &[0.5, 0.3, 0.2], 3).unwrap();
+        for (pace, speed) in Pace::ALL.into_iter().zip([1.0, 2.0, 0.1]) {
+            let spread = calibration.spread(pace, &observed, &goals, &weights, 0.5);
+            let at_end = speed + 0.2 * 3.5_f64.sqrt();
+            let tempered = calibration.tempered(set.clone(), pace, 0.75);
+            let weight = |share: f64| (1.0 - 0.1 * speed) * share / 0.38 + 0.1 * speed / 3.0;
+            for (found, expected) in [
+                (spread[11], at_end.hypot(0.3)),
+                (spread[2], (at_end / 2.0).hypot(0.3)),
+                (tempered.weights()[0], weight(0.25)),
+                (tempered.weights()[2], weight(0.04)),
+                (calibration.share(0.75), 0.6),
+            ] {
+                assert!((found - expected).abs() < 1e-9, "{pace:?}: {found} {expected}");
+            }
+        }
     }
 }

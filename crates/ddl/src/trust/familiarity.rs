@@ -172,77 +172,48 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
     use super::*;
-    use proptest::prelude::*;
-    use rand::SeedableRng as _;
-    use rand_chacha::ChaCha8Rng;
 
-    /// Paths of 0.3 to 1.8 m/s with noise of up to 5 cm.
-    fn tracks() -> Vec<Vec<Position>> {
-        let mut random = ChaCha8Rng::seed_from_u64(7);
-        let mut draw = || random.random::<f64>();
-        (0..4000)
-            .map(|_| {
-                let (speed, tremble) = (0.3 + 1.5 * draw(), 0.05 * draw());
-                (0..20)
-                    .map(|t| {
-                        [
-                            0.4 * speed * f64::from(t) + tremble * (draw() - 0.5),
-                            tremble * (draw() - 0.5),
-                        ]
-                    })
-                    .collect()
+    /// `tests/reference/familiarity.py` draws the same motions, 0.5 s apart.
+    #[test]
+    fn statistics_and_familiarity_are_those_of_numpy() {
+        #[derive(Deserialize)]
+        struct Reference {
+            motions: TrainingMotions,
+            probes: Vec<Vec<Position>>,
+            familiarity: Vec<f64>,
+        }
+        let text = include_str!("../../tests/reference/familiarity.json");
+        let expected: Reference = serde_json::from_str(text).unwrap();
+        let mut state = 7_u64;
+        let mut pair = |scale: f64| {
+            [(); 2].map(|()| {
+                state = (state * 1_103_515_245 + 12_345) % (1 << 31);
+                scale * (state as f64 / f64::from(1_u32 << 31) - 0.5)
             })
-            .collect()
-    }
-
-    /// A share p of motions like those of training has a familiarity below p.
-    #[test]
-    fn familiarity_is_calibrated() {
-        let tracks = tracks();
-        let motions = TrainingMotions::learn(&tracks[..3000], 0.4).unwrap();
-        let familiarity = |track: &Vec<Position>| motions.familiarity(&track[..OBSERVED], 0.4);
-        for level in [0.05, 0.2, 0.5, 0.8] {
-            let below = tracks[3000..].iter().filter(|track| familiarity(track) < level).count();
-            let share = below as f64 / 1000.0;
-            assert!((share - level).abs() < 0.05, "{share} below {level}");
-        }
-    }
-
-    #[test]
-    fn runners_and_jumps_are_unfamiliar() {
-        let motions = TrainingMotions::learn(&tracks(), 0.4).unwrap();
-        let walk = |speed: f64| {
-            (0..8)
-                .map(|t| [0.4 * speed * f64::from(t), 0.01 * f64::from(t % 2)])
-                .collect::<Vec<_>>()
         };
-        let familiar = motions.familiarity(&walk(1.0), 0.4);
-        let runners = [4.0, 6.0, 8.0].map(|speed| motions.familiarity(&walk(speed), 0.4));
-        assert!(
-            familiar > 0.1 && runners[0] < UNFAMILIAR_THRESHOLD && runners.is_sorted_by(|a, b| a > b),
-            "{familiar} {runners:?}"
+        let mut motion = || -> Vec<Position> {
+            let (velocity, change) = (pair(2.0), pair(0.2));
+            let place = |t: f64, noise: Position| [0, 1].map(|c| velocity[c] * t + 0.5 * t * t * change[c] + noise[c]);
+            (0..9).map(|t| place(f64::from(t), pair(0.03))).collect()
+        };
+        let tracks: Vec<_> = (0..1234).map(|_| motion()).collect();
+        let found = TrainingMotions::learn(&tracks, 0.5).unwrap();
+        let numbers = |m: &TrainingMotions| [&m.mean, m.precision.as_flattened(), &m.distances, &[m.fastest]].concat();
+        let familiarity = expected.probes.iter().map(|probe| found.familiarity(probe, 0.5));
+        let jump = |far: f64| std::array::from_fn::<Position, 8, _>(|t| [0.0, if t == 4 { far } else { 0.0 }]);
+        assert_eq!(
+            [1e3, 1e6, 1e200].map(|far| found.familiarity(&jump(far), 0.5)),
+            [LEAST; 3]
         );
-        let mut jump = walk(1.0);
-        jump[7][1] += 8.0;
-        assert!(motions.familiarity(&jump, 0.4) < UNFAMILIAR_THRESHOLD);
-        assert!(motions.familiarity(&[[1e200, 0.0]; 8], 0.4) > 0.0);
-        assert_eq!(TrainingMotions::learn(&[], 0.4), None);
-    }
-
-    proptest! {
-        /// Familiarity is in (0, 1] for every finite motion, and changes little with the speed.
-        #[test]
-        fn familiarity_is_a_smooth_share(
-            track in prop::collection::vec([-1e6..1e6f64, -1e6..1e6f64], 8),
-            speed in 0.0..12.0f64,
-        ) {
-            let motions = TrainingMotions::learn(&tracks(), 0.4).unwrap();
-            let share = motions.familiarity(&track, 0.4);
-            prop_assert!(share > 0.0 && share <= 1.0);
-            let position = |speed: f64, t: i32| [0.4 * speed * f64::from(t), 0.02 * f64::from(t % 2)];
-            let walk = |speed: f64| (0..8).map(|t| position(speed, t)).collect::<Vec<_>>();
-            let step = (motions.familiarity(&walk(speed), 0.4) - motions.familiarity(&walk(speed + 1e-3), 0.4)).abs();
-            prop_assert!(step < 0.05, "{step}");
+        let found: Vec<f64> = numbers(&found).into_iter().chain(familiarity).collect();
+        let expected = [numbers(&expected.motions), expected.familiarity].concat();
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!(
+                (found - expected).abs() < 1e-7 * expected.abs() + 1e-12,
+                "{found} {expected}"
+            );
         }
+        assert_eq!(TrainingMotions::learn(&[], 0.4), None);
     }
 }

@@ -187,7 +187,7 @@ fn hash(crossings: &[Crossing; CROSSINGS]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ddl_data::{Dataset, Observation};
+    use ddl_data::{Dataset, Observation, PedestrianId};
 
     fn fingerprints_of(recordings: &[Recording]) -> TrackFingerprints {
         TrackFingerprints::of(recordings.iter().flat_map(tracks_of))
@@ -231,6 +231,45 @@ mod tests {
         for other in &recordings[2..] {
             assert_eq!(learned.known(&[other]), None, "{}", other.name());
         }
+    }
+
+    /// A step of (2.2, 1.1) m crosses x = 1.0049 at 0.320 of its way, where y = 0.572, y = 1.0049 at 0.714 (x = 1.870) and
+    /// x = 2.0049 at 0.775 (y = 1.072). The hash was computed with Python: the least of the four orders is backwards with
+    /// exchanged axes.
+    #[test]
+    fn crossings_and_their_hash_by_hand() {
+        let crossing = |(axis, line, cell)| Crossing { axis, line, cell };
+        let (from, to) = ([0.3, 0.22], [2.5, 1.32]);
+        let mut expected = [(0, 1, 5), (1, 1, 18), (0, 2, 10)].map(crossing);
+        assert_eq!(crossings_of(from, to), expected);
+        expected.reverse();
+        assert_eq!(crossings_of(to, from), expected);
+        let six = [(0, 3, 14), (1, -2, 31), (0, 4, -7), (0, 5, -2), (1, -1, 52), (1, 0, 58)];
+        assert_eq!(hash(&six.map(crossing)), 183_163_768);
+        let ahead = |steps: std::ops::Range<i32>| steps.map(|t| [0.3 + 0.4 * f64::from(t), 7.3]);
+        // The lines 1 to 8; then the same ones with a jump after the fourth; then who goes to and fro over one line.
+        assert_eq!(hashes(ahead(0..21)).len(), 3);
+        assert_eq!(hashes(ahead(0..11).chain(ahead(50..60))).len(), 0);
+        assert_eq!(hashes((0..40).map(|t| [0.9 + 0.2 * f64::from(t % 2), 0.3])).len(), 0);
+    }
+
+    /// A straight walk over 25 lines has 20 hashes.
+    #[test]
+    fn three_hashes_and_their_share_make_a_recording_known() {
+        let row = |t: i32| Observation::new(i64::from(t), PedestrianId(1), [0.3 + 0.5 * f64::from(t), 0.3]);
+        let known = |lines: i32, learned: usize| {
+            let recording = Recording::new("other", 1, (0..2 * lines).map(row).collect()).unwrap();
+            let all = fingerprints_of(std::slice::from_ref(&recording)).hashes;
+            assert_eq!(all.len() as i32, lines - 6);
+            let some = TrackFingerprints::limited(1, all.into_iter().take(learned).collect());
+            (some.known(&[&recording]), some.is_unknown(&recording))
+        };
+        assert_eq!(known(26, 3), (Some(0.15), false));
+        assert_eq!(known(27, 3), (None, false));
+        assert_eq!(known(18, 2), (None, true));
+        assert_eq!(known(26, 5), (Some(0.25), false));
+        assert_eq!(known(106, 3), (None, false));
+        assert_eq!(known(107, 3), (None, true));
     }
 
     #[test]
