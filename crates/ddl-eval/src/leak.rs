@@ -73,7 +73,7 @@ mod tests {
         frame: usize,
     }
 
-    /// Reveals whether the last pedestrian is apart from the first at one future frame: not if both are moved alike.
+    /// Reveals whether the last pedestrian is apart from the one before at one future frame: not if both are moved alike.
     struct Compares {
         frame: usize,
     }
@@ -84,7 +84,7 @@ mod tests {
         }
 
         fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-            let [first, last] = [0, window.len() - 1].map(|i| window.track(i).get(self.frame));
+            let [first, last] = [window.len() - 2, window.len() - 1].map(|i| window.track(i).get(self.frame));
             Ok(forecast(
                 window.len(),
                 &vec![walk([f64::from(u8::from(first != last)), 0.0], [0.0, 0.0]); window.len()],
@@ -98,7 +98,7 @@ mod tests {
         let three = window(&[still; 3], &[still; 3]);
         for frame in [OBSERVED, WINDOW - 1] {
             let named = find(&Compares { frame }, &three).unwrap().unwrap();
-            assert_eq!(named, format!("pedestrian 0 was moved at frame {}", frame + 1));
+            assert_eq!(named, format!("pedestrian 1 was moved at frame {}", frame + 1));
             let all = find(&Peeks { frame }, &three).unwrap().unwrap();
             assert_eq!(all, "every future position was moved");
         }

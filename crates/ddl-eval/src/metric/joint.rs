@@ -155,8 +155,7 @@ mod tests {
         let along = |x: f64, y: f64| (0..12).map(|t| [x, y + 0.2 * f64::from(t)]).collect::<Vec<_>>();
         let places = [[0.3, 0.0], [0.0, 0.1], [0.4, -0.2]];
         let paths = places.map(|[x, y]| [along(x, y), along(50.0 * x, 40.0 * y)]);
-        let found = colliding(3, 2, |i, k| paths[i][k].as_slice());
-        assert_eq!(found, [vec![3, 0], vec![0, 0]]);
+        assert_eq!(colliding(3, 2, |i, k| paths[i][k].as_slice()), [vec![3, 0], vec![0, 0]]);
         let standing = [[0.0, 0.0], [0.0, -0.35], [0.15, 9.0], [0.0, 9.1]];
         assert_eq!(colliding(4, 1, |i, _| &standing[i..=i]), [vec![4], vec![2]]);
     }

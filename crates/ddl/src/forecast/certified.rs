@@ -311,6 +311,11 @@ mod tests {
                 assert!((made.forecast.scale(i, t).unwrap() - spread[t].hypot(added)).abs() < 1e-12);
             }
             for k in 0..2 {
+                let ([first_x, first_y], [from_x, from_y]) = (made.forecast.hypothesis(i, k)[0], window.observed(i)[7]);
+                assert!(
+                    (first_x - from_x).hypot(first_y - from_y) < 0.9,
+                    "{i} {k}: it goes on from the last position"
+                );
                 let [x, y] = made.forecast.hypothesis(i, k)[HORIZON - 1];
                 let goal = goals[2 * i + k];
                 assert!((x - goal[0]).hypot(y - goal[1]) < 0.05, "{i} {k}: {x} {y}");

@@ -187,14 +187,17 @@ pub(crate) mod tests {
         let mut place = PlaceMemory::new(model, memory).unwrap();
         let lanes = lanes.iter().flat_map(|&(count, lane)| vec![lane; count as usize]);
         for (id, lane) in (0..).zip(lanes) {
-            let (ids, track) = (vec![PedestrianId(id)], (0..8).map(|t| position(t, lane)).collect());
-            let window = Window::new("live", 99 * id, 3, ids, vec![track]).unwrap();
+            let window_on = |lane: f64| {
+                let (ids, track) = (vec![PedestrianId(id)], (0..8).map(|t| position(t, lane)).collect());
+                Window::new("live", 99 * id, 3, ids, vec![track]).unwrap()
+            };
+            let window = window_on(lane);
             let unseen = ObservationQuality {
                 unseen: 1,
                 ..ObservationQuality::default()
             };
-            // Counted once, and not before it was seen for 8 steps.
-            let partial = window.clone().with_qualities(vec![unseen]);
+            // Counted once, and not before it was seen for 8 steps: until then it seems to be elsewhere.
+            let partial = window_on(if lane.abs() < 2.0 { 9.0 } else { 0.0 }).with_qualities(vec![unseen]);
             for (later, window) in [(0, None), (1, Some(&partial)), (2, Some(&window)), (3, Some(&window))] {
                 let row = [(PedestrianId(id), position(7, lane))];
                 place.observe(99 * id + later, row, &[], window).unwrap();
@@ -203,7 +206,8 @@ pub(crate) mod tests {
         place
     }
 
-    /// Tracks less than 2 m apart are alike. 5 of 30 pedestrians are more than 15 %, 4 are not; fewer than 13 refuse nothing.
+    /// Tracks less than 2 m apart are alike. 5 of 30 pedestrians are more than 15 %, 4 are not; fewer than 13 refuse
+    /// nothing.
     #[test]
     fn a_memory_is_refused_and_accepted_by_the_share_of_pedestrians_alike() {
         let (model, given) = (model(), memory(55));

@@ -233,13 +233,13 @@ mod tests {
         }
     }
 
-    /// A step of (2.2, 1.1) m crosses x = 1.0049 at 0.320 of its way, where y = 0.572, y = 1.0049 at 0.714 (x = 1.870) and
-    /// x = 2.0049 at 0.775 (y = 1.072). The hash was computed with Python: the least of the four orders is backwards with
+    /// A step of (2.2, 1.1) m crosses x = 1.0049 at 0.320 of its way, where y = 0.602, y = 1.0049 at 0.686 (x = 1.810) and
+    /// x = 2.0049 at 0.775 (y = 1.102). The hash was computed with Python: the least of the four orders is backwards with
     /// exchanged axes.
     #[test]
     fn crossings_and_their_hash_by_hand() {
         let crossing = |(axis, line, cell)| Crossing { axis, line, cell };
-        let (from, to) = ([0.3, 0.22], [2.5, 1.32]);
+        let (from, to) = ([0.3, 0.25], [2.5, 1.35]);
         let mut expected = [(0, 1, 5), (1, 1, 18), (0, 2, 10)].map(crossing);
         assert_eq!(crossings_of(from, to), expected);
         expected.reverse();
