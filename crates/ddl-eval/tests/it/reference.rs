@@ -86,7 +86,8 @@ fn every_score_of_several_windows_is_the_one_computed_elsewhere() {
                 .with_spread(spread)
                 .unwrap(),
         );
-        (full_windows.push(full), windows.push(window));
+        full_windows.push(full);
+        windows.push(window);
     }
     let scores = |forecasts| json(Scores::under(Protocol::Joint, &windows, &full_windows, forecasts).unwrap());
     check("scores", &scores(&forecasts), &json(&reference.scores));

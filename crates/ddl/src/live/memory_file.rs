@@ -165,7 +165,6 @@ mod tests {
             assert!(told.contains(words) && told.contains("gate.memory"), "{told}");
             assert_eq!(std::fs::read(&path).unwrap(), before);
         }
-        // Not one of five of these is alike, but one of two: the end decides.
         let decided = seen_after(&model, given, &[(1, 9.0), (1, 0.0)]);
         assert_eq!(file.end(decided).unwrap(), None);
         assert_ne!(std::fs::read(&path).unwrap(), before);

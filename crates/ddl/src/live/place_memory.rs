@@ -224,7 +224,6 @@ pub(crate) mod tests {
             (&[(13, 2.3)], true, None, other(0, 13)),
             (&[(6, 2.3), (1, 1.95)], true, Some(7), None),
             (&[(5, 2.3), (1, 1.95)], true, None, None),
-            (&[], true, Some(0), None),
         ] {
             let mut place = seen_after(&model, given.clone(), lanes);
             if finished {

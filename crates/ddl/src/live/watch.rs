@@ -97,8 +97,10 @@ mod tests {
         let clock = Clock::with_frame_time(1.0 / 7.0).unwrap();
         let mut watch = Watch::new(LiveTracks::with_clock(clock));
         let other = watch.remember(&model, Some(SceneMemory::new(3, 9).unwrap()));
-        let (camera, memory) = (14, 3);
-        assert!(matches!(other, Err(DdlError::MemoryFrameStep { camera: c, memory: m }) if (c, m) == (camera, memory)));
+        assert!(matches!(
+            other,
+            Err(DdlError::MemoryFrameStep { camera: 14, memory: 3 })
+        ));
         watch.remember(&model, None).unwrap();
         // The first pedestrian has an impossible row; the second walks on 2 m aside, as if it were another one.
         let rows = |frame: i64| {

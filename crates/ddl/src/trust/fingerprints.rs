@@ -267,7 +267,6 @@ mod tests {
         assert_eq!(known(26, 3), (Some(0.15), false));
         assert_eq!(known(27, 3), (None, false));
         assert_eq!(known(18, 2), (None, true));
-        assert_eq!(known(26, 5), (Some(0.25), false));
         assert_eq!(known(106, 3), (None, false));
         assert_eq!(known(107, 3), (None, true));
     }
