@@ -175,3 +175,6 @@ impl PairEnergy {
         self.together.is_some()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -116,3 +116,6 @@ fn step_of(time: f64) -> (usize, f64) {
     let steps = (time / TIME_STEP).clamp(0.0, HORIZON as f64);
     (steps as usize, steps.fract())
 }
+
+#[cfg(test)]
+mod tests;

@@ -39,7 +39,7 @@ impl Hypotheses {
         }
     }
 
-    fn new<'a>(present: Position, weights: Vec<f32>, path: impl Fn(usize) -> &'a [Position]) -> Self {
+    pub(crate) fn new<'a>(present: Position, weights: Vec<f32>, path: impl Fn(usize) -> &'a [Position]) -> Self {
         let count = weights.len();
         let mut paths = [0, 1].map(|_| vec![0.0; (2 * HORIZON + 1) * count]);
         let mut reach = 0.0_f64;

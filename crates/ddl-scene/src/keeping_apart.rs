@@ -90,3 +90,6 @@ fn far(a: &Path, b: &Path) -> f32 {
         .map(|t| (a[0][t] - b[0][t]).hypot(a[1][t] - b[1][t]))
         .sum()
 }
+
+#[cfg(test)]
+mod tests;

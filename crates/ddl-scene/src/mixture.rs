@@ -203,3 +203,6 @@ fn by_size(labels: Vec<usize>, clusters: usize) -> (Vec<usize>, Vec<u32>) {
     let labels = labels.into_iter().map(|label| ranks[label]).collect();
     (labels, order.iter().map(|&label| sizes[label]).collect())
 }
+
+#[cfg(test)]
+mod tests;

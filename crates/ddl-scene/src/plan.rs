@@ -86,3 +86,6 @@ impl Plan {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -124,3 +124,6 @@ fn least(distances: &[f32]) -> usize {
     let least = distances.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
     least.map_or(0, |(index, _)| index)
 }
+
+#[cfg(test)]
+mod tests;

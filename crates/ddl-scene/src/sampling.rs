@@ -63,3 +63,6 @@ fn draw(weights: &[f32], share: f32) -> u8 {
     let last = weights.iter().rposition(|weight| *weight > 0.0);
     last.unwrap_or(0) as u8
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,6 +13,19 @@ const K: usize = TURNS.len();
 /// Where a pedestrian is, its heading (radians) and its speed (m/s).
 type Person = (Position, f64, f64);
 
+/// The turns and weights of the hypotheses of a pedestrian, in an order that depends on its place, so that hypothesis k
+/// of one has nothing to do with that of another.
+fn hypotheses((at, ..): Person) -> [(f64, f64); K] {
+    let mut both: [(f64, f64); K] = std::array::from_fn(|k| (TURNS[k], WEIGHTS[k]));
+    both.rotate_left((13.01 * at[0] + 7.0 * at[1] + 1000.0) as usize % K);
+    both
+}
+
+/// The hypothesis of a pedestrian that goes straight on.
+fn straight(person: Person) -> usize {
+    hypotheses(person).iter().position(|(turn, _)| *turn == 0.0).unwrap()
+}
+
 /// People who walked straight on, and a hypothesis for each turn; ids in the order of `ids`.
 fn scene(people: &[Person], ids: &[i64]) -> (Window, Forecast) {
     let along = |[x, y]: Position, heading: f64, length: f64| [x + length * heading.cos(), y + length * heading.sin()];
@@ -28,15 +41,18 @@ fn scene(people: &[Person], ids: &[i64]) -> (Window, Forecast) {
     };
     let paths = people
         .iter()
-        .flat_map(|&one| TURNS.into_iter().flat_map(move |turn| path(one, turn)));
+        .flat_map(|&one| hypotheses(one).into_iter().flat_map(move |(turn, _)| path(one, turn)));
     let goals = people
         .iter()
-        .flat_map(|&one| TURNS.map(|turn| path(one, turn).next_back().unwrap()));
+        .flat_map(|&one| hypotheses(one).map(|(turn, _)| path(one, turn).next_back().unwrap()));
     let forecast = Forecast::new(
         people.len(),
         K,
         paths.collect(),
-        WEIGHTS.repeat(people.len()),
+        people
+            .iter()
+            .flat_map(|&one| hypotheses(one).map(|(_, weight)| weight))
+            .collect(),
         Some(goals.collect()),
     );
     (window, forecast.unwrap())
@@ -120,13 +136,14 @@ proptest! {
     fn turned_and_moved_scenes_have_turned_futures(people in crowd()) {
         let ids: Vec<i64> = (0..people.len() as i64).collect();
         let (window, forecast) = scene(&people, &ids);
+        let weights: Vec<f64> = people.iter().flat_map(|&one| hypotheses(one).map(|(_, weight)| weight)).collect();
         let on_grid = |x: f64| (1024.0 * x).round() / 1024.0;
         let seen = |place: fn(Position) -> Position| {
             let place = |at: Position| place(at.map(on_grid));
             let window = window.map_positions(|_, _, at| place(at));
             let pairs = || (0..people.len()).flat_map(|i| (0..K).map(move |k| (i, k)));
             let paths = pairs().flat_map(|(i, k)| forecast.hypothesis(i, k)).map(|at| place(*at));
-            let forecast = Forecast::new(people.len(), K, paths.collect(), WEIGHTS.repeat(people.len()), None);
+            let forecast = Forecast::new(people.len(), K, paths.collect(), weights.clone(), None);
             JointMixture::of(&window, &forecast.unwrap(), None, None)
         };
         prop_assert_eq!(seen(|at| at), seen(|[x, y]| [200_000.0 - y, x - 300_000.0]));
@@ -137,8 +154,8 @@ proptest! {
         let people: Vec<Person> = headings.iter().zip(0..).map(|(&h, i)| ([100.0 * f64::from(i), 0.0], h,
   1.2)).collect();
         let (_, mixture) = mixture(&people);
-        for i in 0..people.len() {
-            for (found, weight) in marginal(&mixture, i).into_iter().zip(WEIGHTS) {
+        for (i, &person) in people.iter().enumerate() {
+            for (found, (_, weight)) in marginal(&mixture, i).into_iter().zip(hypotheses(person)) {
                 prop_assert!((found - weight).abs() < 0.1, "{found} of {weight}");
             }
         }
@@ -176,20 +193,18 @@ proptest! {
         let far = standing([900.0, 0.0]);
         let given = |plan| JointMixture::of(&window, &forecast, plan, None);
         prop_assert_eq!(given(Some(&far)), given(None));
-        let (window, forecast) = scene(&[([0.0, 0.0], 0.0, 1.2)], &[1]);
+        let person = ([0.3, 0.0], 0.0, 1.2);
+        let (window, forecast) = scene(&[person], &[1]);
         let mixture = JointMixture::of(&window, &forecast, Some(&standing([x, 0.0])), None);
-        prop_assert!(marginal(&mixture, 0)[0] < 0.1, "{:?}", marginal(&mixture, 0));
-        // A plan aside is avoided if its radius reaches into the way.
-        let wide = |radius| Plan::new(vec![PlanPoint { time: 0.0, position: [x, 1.4], radius }]).unwrap();
-        let straight = |radius| marginal(&JointMixture::of(&window, &forecast, Some(&wide(radius)), None), 0)[0];
-        prop_assert!(straight(1.4) < 0.5 * straight(0.0), "{} {}", straight(1.4), straight(0.0));
+        prop_assert!(marginal(&mixture, 0)[straight(person)] < 0.1, "{:?}", marginal(&mixture, 0));
     }
 }
 
 #[test]
 fn one_pedestrian_has_its_hypotheses() {
-    let (forecast, mixture) = mixture(&[([1.0, 2.0], 0.4, 1.1)]);
-    assert_eq!(mixture.weights, WEIGHTS);
+    let person = ([1.0, 2.0], 0.4, 1.1);
+    let (forecast, mixture) = mixture(&[person]);
+    assert_eq!(mixture.weights, hypotheses(person).map(|(_, weight)| weight));
     for k in 0..K {
         assert_eq!(path(&forecast, &mixture, 0, k), forecast.hypothesis(0, k));
     }
@@ -203,4 +218,39 @@ fn many_at_one_place_take_no_minutes() {
     let (_, mixture) = mixture(&people);
     assert_eq!(mixture.weights.len(), K);
     assert!(begun.elapsed().as_secs() < 20, "{:?}", begun.elapsed());
+}
+
+/// By the mean distance and the mean velocities of the observation; links make chains.
+#[test]
+fn groups_by_hand() {
+    let track = |[x, y]: Position, [dx, dy]: Position| (0..8).map(f64::from).map(move |t| [x + t * dx, y + t * dy]);
+    let of = |tracks: &[(Position, Position)]| {
+        let ids = (0..tracks.len() as i64).map(PedestrianId).collect();
+        let tracks = tracks.iter().map(|&(at, step)| track(at, step).collect()).collect();
+        groups(&Window::new("yard", 0, 1, ids, tracks).unwrap())
+    };
+    let on = [0.3, -0.4];
+    // 2.1 m from one to the next, the fourth 2.3 m from the third.
+    let row = [0.0, 2.1, 4.2, 6.5].map(|side: f64| ([0.8 * side, 0.6 * side], on));
+    assert_eq!(of(&row), [[0, 1, 2]]);
+    assert_eq!(
+        of(&[row[3], row[2], ([40.0, 0.0], on), row[0], row[1], ([41.0, 1.0], on)]),
+        [vec![1, 3, 4], vec![2, 5]]
+    );
+    // 0.34 and 0.36 m/s apart: 0.136 and 0.144 m in 0.4 s.
+    for (faster, expected) in [(0.136, 1), (0.144, 0)] {
+        assert_eq!(
+            of(&[
+                ([0.0; 2], on),
+                ([0.5, 0.5], [on[0] + 0.6 * faster, on[1] - 0.8 * faster])
+            ])
+            .len(),
+            expected
+        );
+    }
+    // 2.6 m apart at first, 1.7 m at last, and the other way round: 2.15 m on average. 0.1 m more is too far.
+    for (x, step) in [(2.6, -0.128), (1.704, 0.128)] {
+        let [near, far] = [0.0, 0.1].map(|more| of(&[([0.0; 2], on), ([x + more, 0.0], [on[0] + step, on[1]])]));
+        assert_eq!([near.len(), far.len()], [1, 0]);
+    }
 }

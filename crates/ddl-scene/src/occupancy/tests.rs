@@ -54,11 +54,13 @@ proptest! {
         let weights = [0.7, 0.3];
         let crowd = futures(&starts, &speeds, &weights, &scales);
         let grid = grids(&crowd, &area, &[time]).remove(0);
-        for (cell, &found) in grid.probabilities.iter().enumerate() {
-            let centre = area.centre([cell % 20, cell / 20]);
+        let places = (0..24).flat_map(|row| (0..20).map(move |column| [column, row]));
+        for (place, &found) in places.zip(&grid.probabilities) {
+            let centre = [0.25 * f64::from(place[0]) - 2.875, 0.25 * f64::from(place[1]) - 2.375];
             let expected: f64 = (0..2).map(|k| {
                 let free = |i: usize| {
-                    1.0 - mass(distance(centre, crowd.position(i, k, time)), 0.25, crowd.scale(i, time).unwrap())
+                    let at = [0, 1].map(|axis| starts[i][axis] + time * speeds[i][k][axis]);
+                    1.0 - mass(distance(centre, at), 0.25, scales[i] * time / 4.8)
                 };
                 weights[k] * (1.0 - (0..3).map(free).product::<f64>())
             }).sum();

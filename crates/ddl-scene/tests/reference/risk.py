@@ -1,60 +1,90 @@
-# Writes risk.json: risks and clearances of scenes like those of src/fixture.rs by Monte Carlo, with numpy 2.4.6: a
-# million deviations of every pedestrian in every future. `python3 risk.py` in this folder.
+# Writes risk.json: risks and clearances of scenes like those of src/fixture.rs by Monte Carlo, with numpy 2.4.6:
+# 200,000 deviations of every pedestrian in every future. `python3 risk.py` in this folder; again after a change of the
+# avoidance in src/energy.json.
 import json
 
 import numpy as np
 
-DRAWS = 1_000_000
+DRAWS = 200_000
+PLACES = 16  # looked at in each step
+with open("../../src/energy.json") as file:
+    AVOIDANCE = json.load(file)["avoidance"]
 
 
-def least_distances(start, velocity, scale, plan, z):
-    """Least distance of each draw from the middle of the plan during each of 12 steps."""
-    rows = np.asarray(plan)
-    least = []
+def distances(case, pedestrian, future, z):
+    """Distance of each draw from the edge of the plan, `[12][PLACES + 1][DRAWS]`."""
+    rows = np.asarray(case["plan"])
+    scales = [case["deviation"], *(case["scales"][pedestrian] * t / 12 for t in range(1, 13))]
+    steps = []
     for step in range(12):
-        ends = []
-        for t in (step, step + 1):
-            at = np.array([np.interp(0.4 * t, rows[:, 0], rows[:, axis]) for axis in (1, 2)])
-            ends.append(np.asarray(start) + 0.4 * t * np.asarray(velocity) - at + scale * t / 12 * z)
-        way = ends[1] - ends[0]
-        share = np.clip(-(ends[0] * way).sum(1) / (way * way).sum(1), 0, 1)[:, None]
-        least.append(np.linalg.norm(ends[0] + share * way, axis=1))
-    return np.array(least)
+        places = []
+        for t in np.linspace(step, step + 1, PLACES + 1):
+            plan = np.array([np.interp(0.4 * t, rows[:, 0], rows[:, column]) for column in (1, 2, 3)])
+            at = np.asarray(case["starts"][pedestrian]) + 0.4 * t * np.asarray(case["velocities"][pedestrian][future])
+            gap = at - plan[:2] + np.interp(t, range(13), scales) * z
+            places.append(np.linalg.norm(gap, axis=1) - plan[2])
+        steps.append(places)
+    return np.array(steps)
 
 
-def scene(rng):
-    n, k = 3, 4
+def companions(case):
+    """Who stands in a chain of people less than 2.2 m apart from each other, beside the ego."""
+    linked = {case["ego"]}
+    for _ in case["starts"]:
+        for other, place in enumerate(case["starts"]):
+            if any(np.hypot(*np.subtract(place, case["starts"][one])) < 2.2 for one in linked):
+                linked.add(other)
+    return linked
+
+
+def scene(rng, size, deviation, ego):
+    n, k = 4, 3
     weights = rng.dirichlet(np.ones(k))
     case = {
-        "starts": rng.uniform(-4, 4, (n, 2)).tolist(),
+        "starts": rng.uniform(-size, size, (n, 2)).tolist(),
         "velocities": rng.uniform(-1.2, 1.2, (n, k, 2)).tolist(),
         "weights": weights.tolist(),
         "scales": rng.uniform(0.1, 1.0, n).tolist(),
-        "plan": [[time, *rng.uniform(-2, 2, 2), 0.3] for time in (0, 2.4, 4.8)],
-        "within": float(rng.uniform(0.1, 0.6)),
+        "deviation": deviation,
+        "plan": [[time, *rng.uniform(-2, 2, 2), float(rng.uniform(0, 0.8))] for time in (0, 1.6, 4.8)],
+        "within": float(rng.uniform(0.1, 0.5)),
+        "ego": ego,
     }
-    reach = case["within"] + 0.3
-    nearest, steps, until = 0, np.zeros(12), np.zeros(12)
-    pedestrians, clearances = np.zeros(n), np.zeros(n)
+    reach = case["within"] + max(row[3] for row in case["plan"])
+    odds = [np.exp(-np.interp(reach, AVOIDANCE["within"], AVOIDANCE[kind])) for kind in ("strangers", "companions")]
+    together = set() if ego is None else companions(case)
+    results = {"unseen": np.zeros(n + 24), "seen": np.zeros(n + 24)}
+    clearances, nearest = np.zeros(n), 0
     for future in range(k):
-        close, far = np.zeros((12, DRAWS), bool), np.full(DRAWS, np.inf)
+        nobody = {name: np.ones(24) for name in results}
+        far = np.full(DRAWS, np.inf)
         for i in range(n):
             z = rng.standard_normal((DRAWS, 2)) * np.sqrt(3 / rng.chisquare(3, DRAWS))[:, None]
-            least = least_distances(
-                case["starts"][i], case["velocities"][i][future], case["scales"][i], case["plan"], z
-            )
-            close |= least <= reach
-            edge = np.maximum(least.min(0) - 0.3, 0)
+            gaps = distances(case, i, future, z)
+            edge = np.maximum(gaps.min((0, 1)), 0)
             far = np.minimum(far, edge)
-            pedestrians[i] += weights[future] * (least <= reach).any(0).mean()
             clearances[i] += weights[future] * edge.mean()
-        steps += weights[future] * close.mean(1)
-        until += weights[future] * np.logical_or.accumulate(close).mean(1)
+            if i == ego:
+                continue
+            now = gaps[0, 0] <= case["within"]
+            during = gaps.min(1) <= case["within"]
+            close = np.concatenate([during, np.logical_or.accumulate(during)])
+            later = (close & ~now).mean(1)
+            share = later[-1] / max(1 - now.mean(), 1e-300)
+            for name, factor in (("unseen", 1.0), ("seen", odds[int(i in together)])):
+                # The odds of who is not close now are multiplied by the factor.
+                reduction = factor / (1 - share + share * factor)
+                probabilities = (close & now).mean(1) + reduction * later
+                nobody[name] *= 1 - probabilities
+                results[name][i] += weights[future] * probabilities[-1]
+        for name, empty in nobody.items():
+            results[name][n:] += weights[future] * (1 - empty)
         nearest += weights[future] * far.mean()
-    case |= {"pedestrians": pedestrians, "steps": steps, "until": until, "clearances": clearances, "nearest": nearest}
-    return {name: np.round(value, 4).tolist() if name in list(case)[6:] else value for name, value in case.items()}
+    case |= {name: np.round(values, 4).tolist() for name, values in results.items()}
+    return case | {"clearances": np.round(clearances, 4).tolist(), "nearest": round(nearest, 4)}
 
 
 rng = np.random.default_rng(1)
+settings = [(4, 0.0, None), (4, 0.0, 1), (2, 0.4, None), (2, 0.8, 0), (3, 0.2, 2), (1.5, 0.0, 3), (5, 1.0, None)]
 with open("risk.json", "w") as file:
-    file.write("[\n" + ",\n".join(json.dumps(scene(rng)) for _ in range(4)) + "\n]\n")
+    file.write("[\n" + ",\n".join(json.dumps(scene(rng, *setting)) for setting in settings) + "\n]\n")
