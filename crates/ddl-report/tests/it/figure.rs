@@ -5,10 +5,6 @@ use ddl_data::{PedestrianId, Window};
 use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint};
 use ddl_report::figure;
 
-fn count(svg: &str, shape: &str) -> usize {
-    svg.matches(shape).count()
-}
-
 fn window(pedestrians: i64) -> Window {
     let track = |i: i64| (0..20).map(move |t| [0.4 * f64::from(t), i as f64 + 0.05 * f64::from(t)]);
     let ids: Vec<_> = (0..pedestrians).map(PedestrianId).collect();
@@ -16,23 +12,12 @@ fn window(pedestrians: i64) -> Window {
     Window::new("<corridor> & \"co\"", 120, 10, ids, tracks).unwrap()
 }
 
-const STAR: &str = "class=\"star\"";
-
+/// Text from the user's files.
 #[test]
-fn every_role_of_a_scene_is_drawn_and_named() {
-    let window = window(2);
-    let forecast = StraightLine(TrueEndpoint).forecast(&window).unwrap();
-    let svg = figure::scene(&window, &forecast).unwrap();
-    assert!(svg.starts_with("<?xml") && svg.trim_end().ends_with("</svg>"));
-    for text in ["observed, 3.2 s", "truth, 4.8 s", "forecast", "goal", "x (m)", "y (m)"] {
-        assert!(svg.contains(text), "no `{text}`");
-    }
-    // Text from the user's files must be escaped.
+fn names_are_escaped() {
+    let forecast = StraightLine(TrueEndpoint).forecast(&window(2)).unwrap();
+    let svg = figure::scene(&window(2), &forecast).unwrap();
     assert!(svg.contains("&lt;corridor&gt; &amp; ") && !svg.contains("<corridor>"));
-    // 8 observed dots, a true end and a goal for each of the two, and the legend's 4, 1 and 1.
-    assert_eq!(count(&svg, "<circle"), 2 * (8 + 1 + 1) + 4 + 1 + 1);
-    // A star for each of the two and for the legend.
-    assert_eq!(count(&svg, STAR), 2 + 1);
 }
 
 /// What has no rule is black.

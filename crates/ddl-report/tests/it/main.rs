@@ -5,4 +5,5 @@
 mod figure;
 mod gallery;
 mod page;
+mod pictures;
 mod report;
