@@ -1,6 +1,8 @@
 //! `cargo xtask nightly`: what takes too long for `ci`. docs/reliability.md says when each was run, and its figures.
 
-use std::time::Instant;
+use std::fs;
+use std::process::Command;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
@@ -9,10 +11,13 @@ use super::{c, docs, python, release, set_up, test, web};
 use crate::browser;
 use crate::debian;
 use crate::libtorch::{self, Request};
-use crate::process::run;
+use crate::process::{read, run};
 use crate::recordings::bring_in;
 use crate::tools::cargo_tool;
 use crate::workspace::Workspace;
+
+/// Size of a sample of mutants, of 17,000.
+const MUTANTS: usize = 120;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -29,7 +34,7 @@ enum Check {
     Faults,
     /// Every reader of untrusted input (-- TARGET...; RUNS=10000000, SANITIZER=none)
     Fuzz,
-    /// The tests find changes of the numeric code (-- options of cargo-mutants)
+    /// The tests find changes of the code: a new sample each day (-- options of cargo-mutants)
     Mutants,
     /// The benchmark on a real Slurm of two nodes on this machine
     Cluster,
@@ -122,12 +127,46 @@ fn fuzz(workspace: &Workspace, words: &[String]) -> Result<()> {
     run(script.env("CARGO_FUZZ", fuzz).env("LD_LIBRARY_PATH", libtorch))
 }
 
+/// A sample of mutants, by the tests of their own crates; those that these miss, by the tests of the program.
 fn mutants(workspace: &Workspace, words: &[String]) -> Result<()> {
-    let mutants = cargo_tool(workspace, "cargo-mutants", "27.1.0")?;
-    let mut command = workspace.program(mutants);
-    // In a common folder, the tests of two mutants that run at the same time would overwrite each other.
-    command.env_remove("CARGO_TARGET_DIR").arg("mutants").args(words);
-    run(&mut command)
+    set_up(workspace)?;
+    bring_in(workspace)?;
+    let tool = cargo_tool(workspace, "cargo-mutants", "27.1.0")?;
+    let recordings = workspace.recordings()?.unwrap_or_default();
+    let mutants = |words: &[String]| {
+        let mut command = workspace.program(&tool);
+        // In a common folder, the tests of two mutants that run at the same time would overwrite each other.
+        command.env_remove("CARGO_TARGET_DIR").arg("mutants").args(words);
+        // The copies in which mutants are tested lack what git ignores: recordings, and where libtorch lies.
+        let libtorch = workspace.path(".cargo/config.generated.toml");
+        command.arg(format!("--cargo-arg=--config={}", libtorch.display()));
+        command.env("DDL_DATASETS", &recordings);
+        command
+    };
+    let words = if words.is_empty() {
+        sample(&mut mutants(&["--list".to_owned()]))?
+    } else {
+        words.to_vec()
+    };
+    println!("cargo xtask nightly mutants -- {}", words.join(" "));
+    let Err(failure) = run(&mut mutants(&words)) else {
+        return Ok(());
+    };
+    let missed = fs::read_to_string(workspace.path("target/mutants.out/missed.txt")).unwrap_or_default();
+    ensure!(!missed.is_empty(), failure);
+    // Names as regular expressions, whose special characters stand for themselves among others.
+    let any = |name: &str| format!("^{}$", name.replace(|letter: char| !letter.is_alphanumeric(), "."));
+    let again = missed.lines().map(|name| format!("--re={}", any(name)));
+    let again = ["--test-package=ddl-tests".to_owned()].into_iter().chain(again);
+    run(&mut mutants(&again.collect::<Vec<_>>()))
+}
+
+/// Every day another one.
+fn sample(list: &mut Command) -> Result<Vec<String>> {
+    let shards = (read(list)?.lines().count() / MUTANTS).max(1);
+    let days = SystemTime::now().duration_since(UNIX_EPOCH)?.as_secs() / 86_400;
+    let shard = format!("--shard={}/{shards}", days as usize % shards);
+    Ok(vec![shard, "--sharding=round-robin".to_owned()])
 }
 
 fn cluster(workspace: &Workspace, words: &[String]) -> Result<()> {
