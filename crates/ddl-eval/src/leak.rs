@@ -73,7 +73,8 @@ mod tests {
         frame: usize,
     }
 
-    /// Reveals whether the last pedestrian is apart from the one before at one future frame: not if both are moved alike.
+    /// Reveals whether the last pedestrian is apart from the one before at one future frame: not if both are moved
+    /// alike.
     struct Compares {
         frame: usize,
     }

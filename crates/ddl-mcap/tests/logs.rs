@@ -84,7 +84,9 @@ fn messages_give_their_rows_notes_and_errors() {
             Ok(tracks) => {
                 let (log, frame) = (&tracks.recording, &tracks.topic.frame_id);
                 let (restarts, step) = (log.summary().restarts, log.frame_step());
-                let found = json!({"rows": rows(&tracks), "notes": log.notes(), "restarts": restarts, "frame": frame, "step": step});
+                let found = json!({
+                    "rows": rows(&tracks), "notes": log.notes(), "restarts": restarts, "frame": frame, "step": step
+                });
                 assert_eq!(found, case["found"]);
             }
             Err(error) => assert!(error.contains(case["error"].as_str().unwrap()), "{error}"),

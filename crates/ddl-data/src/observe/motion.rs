@@ -80,7 +80,8 @@ impl Motion {
         }
     }
 
-    /// The motion in the light of what came some seconds after it: a step back of Rauch, Tung and Striebel.
+    /// The motion in the light of what came some seconds after it: a step back of Rauch, Tung and Striebel. Its
+    /// covariance stays that of the filter, because only that of the last motion is read.
     pub(super) fn smoothed(&self, later: &Self, seconds: f64) -> Self {
         let expected = self.expected_after(seconds);
         // The gain P F^T E^-1, with the covariance P of this motion and E of the expected one.
@@ -94,14 +95,6 @@ impl Motion {
             ],
         ];
         let gain = rows.map(|[p, v]| [p * inverse[0] + v * inverse[1], p * inverse[1] + v * inverse[2]]);
-        let less = [
-            later.variance - expected.variance,
-            later.covariance - expected.covariance,
-            later.velocity_variance - expected.velocity_variance,
-        ];
-        let product = |a: [f64; 2], b: [f64; 2]| {
-            a[0] * (b[0] * less[0] + b[1] * less[1]) + a[1] * (b[0] * less[1] + b[1] * less[2])
-        };
         let offset = |axis: usize| {
             [
                 later.position[axis] - expected.position[axis],
@@ -112,9 +105,6 @@ impl Motion {
         Self {
             position: [0, 1].map(|axis| self.position[axis] + moved(gain[0], axis)),
             velocity: [0, 1].map(|axis| self.velocity[axis] + moved(gain[1], axis)),
-            variance: self.variance + product(gain[0], gain[0]),
-            covariance: self.covariance + product(gain[0], gain[1]),
-            velocity_variance: self.velocity_variance + product(gain[1], gain[1]),
             ..*self
         }
     }

@@ -127,6 +127,7 @@ fn folds_never_train_on_what_they_test_on() {
         dataset.fold_names(),
         ["corridor", "crossing", "plaza", "bottleneck", "doorway"]
     );
+    assert!(Convention::Star.folds_with_place_memory().eq(["zara1", "zara2"]));
     for fold in dataset.folds() {
         let names = |rs: &[&Recording]| rs.iter().map(|r| r.name().to_owned()).collect::<Vec<_>>();
         let (test, training) = (names(fold.test_recordings()), names(fold.training_recordings()));

@@ -177,8 +177,8 @@ mod tests {
     }
 
     /// Two pedestrians meet, one overtakes, one stands; then a slow one is pushed to its top speed.
-    /// `tests/reference/social_force.py` computed the expected positions (first, sixth and last step), with fourth-order
-    /// differences of the potential.
+    /// `tests/reference/social_force.py` computed the expected positions (first, sixth and last step), with
+    /// fourth-order differences of the potential.
     #[test]
     fn pedestrians_walk_as_computed_otherwise() {
         let meets = ([-3.5, 0.0], [0.5, 0.0]);

@@ -148,8 +148,8 @@ fn far_apart([low, high]: [Position; 2], [other_low, other_high]: [Position; 2])
 mod tests {
     use super::*;
 
-    /// Three walk side by side, 0.22 to 0.5 m apart, or far apart in their second future; four stand in pairs, 0.35 m and
-    /// 0.18 m apart.
+    /// Three walk side by side, 0.22 to 0.5 m apart, or far apart in their second future; four stand in pairs, 0.35 m
+    /// and 0.18 m apart.
     #[test]
     fn who_comes_too_near_is_counted_at_each_distance_in_each_future() {
         let along = |x: f64, y: f64| (0..12).map(|t| [x, y + 0.2 * f64::from(t)]).collect::<Vec<_>>();

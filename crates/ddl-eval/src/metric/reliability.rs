@@ -99,8 +99,8 @@ mod tests {
         let log_loss = -0.5 * SMALLEST.ln();
         assert_relative_eq!(overconfident.log_loss, log_loss, epsilon = 1e-12);
         assert_eq!(Reliability::of([]), None);
-        // 11 goals in bins of 2 and one of 1, predicted and observed: 0.15 and 0.5, 0.225 and 0.5, 0.325 and 0, 0.45 and
-        // 0.5, 0.85 and 0.5, 1 and 1.
+        // 11 goals in bins of 2 and one of 1, predicted and observed: 0.15 and 0.5, 0.225 and 0.5, 0.325 and 0, 0.45
+        // and 0.5, 0.85 and 0.5, 1 and 1.
         let sets: [(&[f64], usize); 5] = [
             (&[0.5, 0.3, 0.2], 0),
             (&[0.9, 0.1], 1),

@@ -1,5 +1,5 @@
-# Writes scores.json: made-up windows of several sizes with their forecasts, and every metric as numpy 2 computes it from
-# its definition, one pedestrian after another. `python3 scores.py` in this folder.
+# Writes scores.json: made-up windows of several sizes with their forecasts, and every metric as numpy 2 computes it
+# from its definition, one pedestrian after another. `python3 scores.py` in this folder.
 import json
 import math
 
@@ -197,7 +197,11 @@ def pedestrians(s, quantiles, with_spread):
             one["region_radius"] = [radius_of(o[-1]) for o in of_level]
             one["familiarity"] = s["familiarity"][i]
         found.append(one)
-    share = lambda d: [np.mean([np.mean(h) for h in future_hits[d]]), np.mean(future_hits[d][best[0]]), np.mean(true_hits[d])]
+    share = lambda d: [
+        np.mean([np.mean(h) for h in future_hits[d]]),
+        np.mean(future_hits[d][best[0]]),
+        np.mean(true_hits[d]),
+    ]
     return found, [np.mean([p["joint"][e] for p in found]) for e in (0, 1)], [share(0.4), share(0.2)]
 
 
@@ -256,7 +260,9 @@ def blocks(scenes, parts, is_joint):
     sums = {}
     for s, (found, joint, _) in zip(scenes, parts):
         key = (s["recording"], s["start"] // (50 * STEP))
-        errors = len(found) * np.array(joint) if is_joint else sum(np.array([p["min_ade"], p["min_fde"]]) for p in found)
+        errors = (
+            len(found) * np.array(joint) if is_joint else sum(np.array([p["min_ade"], p["min_fde"]]) for p in found)
+        )
         count, sum_so_far = sums.get(key, (0, np.zeros(2)))
         sums[key] = (count + len(found), sum_so_far + errors)
     names = ("recording", "block", "pedestrians", "min_ade", "min_fde")

@@ -47,7 +47,8 @@ mod tests {
     use ddl_core::Forecast;
     use ddl_data::{Clock, FrameNumber, PedestrianId, SceneName, Window};
 
-    /// 7 frames a second: 5 ticks a frame, 14 a step. The window ends at tick 7 * 14 + 70 = 168, frame 33.6, after 4.8 s.
+    /// 7 frames a second: 5 ticks a frame, 14 a step. The window ends at tick 7 * 14 + 70 = 168, frame 33.6, after 4.8
+    /// s.
     #[test]
     fn moments_count_frames_and_the_unfamiliar_are_told_once() {
         let clock = Clock::with_frame_time(1.0 / 7.0).unwrap();

@@ -151,8 +151,8 @@ mod tests {
         }
     }
 
-    /// 1 m/s along a diagonal. The mean of the goals is (4, 1), and 7 m^2 the sum of their variances along x and y. With
-    /// the trust 0.75 / (0.75 + 0.25) the power of the weights is 0.5 + 0.75 * 2 = 2: 0.25, 0.09 and 0.04 of 0.38.
+    /// 1 m/s along a diagonal. The mean of the goals is (4, 1), and 7 m^2 the sum of their variances along x and y.
+    /// With the trust 0.75 / (0.75 + 0.25) the power of the weights is 0.5 + 0.75 * 2 = 2: 0.25, 0.09 and 0.04 of 0.38.
     #[test]
     fn spread_weights_and_shares_by_hand() {
         let mut calibration = Calibration {

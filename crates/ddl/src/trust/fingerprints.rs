@@ -233,9 +233,9 @@ mod tests {
         }
     }
 
-    /// A step of (2.2, 1.1) m crosses x = 1.0049 at 0.320 of its way, where y = 0.602, y = 1.0049 at 0.686 (x = 1.810) and
-    /// x = 2.0049 at 0.775 (y = 1.102). The hash was computed with Python: the least of the four orders is backwards with
-    /// exchanged axes.
+    /// A step of (2.2, 1.1) m crosses x = 1.0049 at 0.320 of its way, where y = 0.602, y = 1.0049 at 0.686 (x = 1.810)
+    /// and x = 2.0049 at 0.775 (y = 1.102). The hash was computed with Python: the least of the four orders is
+    /// backwards with exchanged axes.
     #[test]
     fn crossings_and_their_hash_by_hand() {
         let crossing = |(axis, line, cell)| Crossing { axis, line, cell };
