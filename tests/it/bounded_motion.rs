@@ -109,19 +109,14 @@ proptest! {
         tracks in prop::collection::vec(observation(), TOGETHER),
         model in 0..MODELS.len(),
     ) {
-        check(&MODELS[model], &tracks)?;
+        let windows = [window(tracks.clone())];
+        let many = MODELS[model].forecast_certified(&windows).unwrap().remove(0);
+        let one = MODELS[model].forecast_central_certified(&windows).unwrap().remove(0);
+        for (i, observed) in tracks.iter().enumerate() {
+            within_bounds(observed, &many, i)?;
+            within_bounds(observed, &one, i)?;
+        }
     }
-}
-
-fn check(model: &Ddl, tracks: &[Vec<Position>]) -> Result<(), TestCaseError> {
-    let windows = [window(tracks.to_vec())];
-    let many = model.forecast_certified(&windows).unwrap().remove(0);
-    let one = model.forecast_central_certified(&windows).unwrap().remove(0);
-    for (i, observed) in tracks.iter().enumerate() {
-        within_bounds(observed, &many, i)?;
-        within_bounds(observed, &one, i)?;
-    }
-    Ok(())
 }
 
 #[test]

@@ -4,13 +4,13 @@ use crate::live::Live;
 use ddl::data::{Completeness, LiveTracks, PedestrianId, Position, SceneName};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::memory::SceneMemory;
-use ddl::{DdlError, Forecaster, LiveForecaster, LiveScenes, Variant};
+use ddl::{DdlError, Forecaster as _, LiveForecaster, LiveScenes};
+use ddl_tests::bits;
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
-use ddl_tests::{bits, drawn_model};
 use proptest::prelude::*;
 use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write as _;
 
 type Seen = (i64, Vec<(PedestrianId, Position)>);
@@ -22,7 +22,7 @@ fn name(scene: &str) -> SceneName {
 /// The forecasts of a stream: the frame, and the bits of its forecast.
 type Answers = Vec<(i64, Vec<u64>)>;
 
-fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
+fn alone(model: ConstantVelocity, frames: &[Seen]) -> Answers {
     let mut live = LiveForecaster::with_tracks(model, LiveTracks::new().with_completeness(Completeness::Partial));
     let answers = frames.iter().filter_map(|(frame, people)| {
         let now = live.push(*frame, people.iter().copied()).unwrap()?;
@@ -53,95 +53,80 @@ fn streams() -> impl Strategy<Value = (Vec<Vec<Seen>>, Vec<(usize, bool)>, usize
     ((0..3).map(frames).collect::<Vec<_>>(), turns, 1..20_usize)
 }
 
-fn check_interleaved(
-    model: &impl Forecaster,
-    (frames, turns, batch): (Vec<Vec<Seen>>, Vec<(usize, bool)>, usize),
-) -> Result<(), TestCaseError> {
-    let names = ["hall", "yard", "gate"].map(name);
-    let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
-    let mut scenes = LiveScenes::new(LiveTracks::new().with_completeness(Completeness::Partial));
-    let mut latest = scenes.clone().latest_only();
-    let mut answers = BTreeMap::<SceneName, Answers>::new();
-    let mut answers_of_latest = answers.clone();
-    let take = |scenes: &mut LiveScenes, to: &mut BTreeMap<SceneName, Answers>| {
-        let batch = scenes.next_batch(batch);
-        let forecasts = model.forecast_all(&batch.windows).unwrap();
-        for ((scene, window), forecast) in batch.scenes.into_iter().zip(&batch.windows).zip(&forecasts) {
-            let answers = to.entry(scene.unwrap()).or_default();
-            answers.push((window.frames()[7], bits::of(forecast)));
-        }
-    };
-    let rest = (0..3).cycle().take(60).map(|scene| (scene, false));
-    for (scene, forecasts) in turns.into_iter().chain(rest) {
-        if let Some((frame, people)) = queues[scene].pop_front() {
-            for scenes in [&mut scenes, &mut latest] {
-                scenes
-                    .observe(Some(&names[scene]), *frame, people.iter().copied())
-                    .unwrap();
+proptest! {
+    #[test]
+    fn each_scene_is_forecast_as_if_it_were_alone((frames, turns, batch) in streams()) {
+        let model = ConstantVelocity::LastStep;
+        let names = ["hall", "yard", "gate"].map(name);
+        let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
+        let mut scenes = LiveScenes::new(LiveTracks::new().with_completeness(Completeness::Partial));
+        let mut latest = scenes.clone().latest_only();
+        let mut answers = BTreeMap::<SceneName, Answers>::new();
+        let mut answers_of_latest = answers.clone();
+        let take = |scenes: &mut LiveScenes, to: &mut BTreeMap<SceneName, Answers>| {
+            let batch = scenes.next_batch(batch);
+            let forecasts = model.forecast_all(&batch.windows).unwrap();
+            for ((scene, window), forecast) in batch.scenes.into_iter().zip(&batch.windows).zip(&forecasts) {
+                let answers = to.entry(scene.unwrap()).or_default();
+                answers.push((window.frames()[7], bits::of(forecast)));
+            }
+        };
+        let rest = (0..3).cycle().take(60).map(|scene| (scene, false));
+        for (scene, forecasts) in turns.into_iter().chain(rest) {
+            if let Some((frame, people)) = queues[scene].pop_front() {
+                for scenes in [&mut scenes, &mut latest] {
+                    scenes
+                        .observe(Some(&names[scene]), *frame, people.iter().copied())
+                        .unwrap();
+                }
+            }
+            if forecasts {
+                take(&mut scenes, &mut answers);
+                take(&mut latest, &mut answers_of_latest);
             }
         }
-        if forecasts {
+        while scenes.waiting() + latest.waiting() > 0 {
             take(&mut scenes, &mut answers);
             take(&mut latest, &mut answers_of_latest);
         }
-    }
-    while scenes.waiting() + latest.waiting() > 0 {
-        take(&mut scenes, &mut answers);
-        take(&mut latest, &mut answers_of_latest);
-    }
-    prop_assert_eq!(scenes.dropped(), 0);
-    let mut dropped = 0;
-    for (name, frames) in names.iter().zip(&frames) {
-        let expected = alone(model, frames);
-        let of_latest = answers_of_latest.remove(name).unwrap_or_default();
-        dropped += expected.len() - of_latest.len();
-        // The forecasts are those without dropped frames, and the last frame is forecast.
-        let by_frame: BTreeMap<_, _> = expected.iter().cloned().collect();
-        prop_assert!(of_latest.iter().all(|(frame, bits)| by_frame.get(frame) == Some(bits)));
-        if let (Some(last), Some((frame, _))) = (expected.last(), frames.last())
-            && last.0 == *frame
-        {
-            prop_assert_eq!(of_latest.last(), Some(last));
+        prop_assert_eq!(scenes.dropped(), 0);
+        let mut dropped = 0;
+        for (name, frames) in names.iter().zip(&frames) {
+            let expected = alone(model, frames);
+            let of_latest = answers_of_latest.remove(name).unwrap_or_default();
+            dropped += expected.len() - of_latest.len();
+            // The forecasts are those without dropped frames, and the last frame is forecast.
+            let by_frame: BTreeMap<_, _> = expected.iter().cloned().collect();
+            prop_assert!(of_latest.iter().all(|(frame, bits)| by_frame.get(frame) == Some(bits)));
+            if let (Some(last), Some((frame, _))) = (expected.last(), frames.last())
+                && last.0 == *frame
+            {
+                prop_assert_eq!(of_latest.last(), Some(last));
+            }
+            prop_assert_eq!(answers.remove(name).unwrap_or_default(), expected);
         }
-        prop_assert_eq!(answers.remove(name).unwrap_or_default(), expected);
-    }
-    prop_assert_eq!(latest.dropped(), dropped as u64);
-    Ok(())
-}
-
-proptest! {
-    #[test]
-    fn each_scene_is_forecast_as_if_it_were_alone(streams in streams()) {
-        check_interleaved(&ConstantVelocity::LastStep, streams)?;
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(6))]
-    #[test]
-    fn so_it_is_by_a_network_in_batches(streams in streams()) {
-        check_interleaved(&drawn_model::of(Variant::Full), streams)?;
+        prop_assert_eq!(latest.dropped(), dropped as u64);
     }
 }
 
 #[test]
 fn a_wrong_frame_of_a_scene_changes_nothing() {
     let mut scenes = LiveScenes::new(LiveTracks::new());
-    for frame in 0..7 {
+    let seen = [(PedestrianId(1), [0.0, 0.0])];
+    let both_see = |scenes: &mut LiveScenes, frame| {
         for scene in ["a", "c"] {
-            let seen = [(PedestrianId(1), [0.0, 0.0])];
             scenes.observe(Some(&name(scene)), frame, seen).unwrap();
         }
+    };
+    for frame in 0..7 {
+        both_see(&mut scenes, frame);
     }
     let error = scenes.observe(Some(&name("a")), 3, []).unwrap_err();
     assert!(matches!(error, DdlError::Live(_)), "{error}");
     let nowhere = [(PedestrianId(1), [f64::NAN, 0.0])];
     assert!(scenes.observe(Some(&name("d")), 0, nowhere).is_err());
     assert!(scenes.tracks(Some(&name("d"))).is_none(), "nothing has changed");
-    let seen = [(PedestrianId(1), [0.0, 0.0])];
-    for scene in ["a", "c"] {
-        scenes.observe(Some(&name(scene)), 7, seen).unwrap();
-    }
+    both_see(&mut scenes, 7);
     assert_eq!(scenes.next_batch(100).windows.len(), 2);
 }
 
@@ -149,25 +134,21 @@ const LINE: &str = "forecast - --model run --threads 1 --frame-step 10";
 
 /// Recordings of two scenes, whose frames alternate; the second scene begins two frames later.
 fn recordings() -> [(&'static str, Vec<Row>); 2] {
-    let three = own_tracks::three_pedestrians(12);
-    let crowd = own_tracks::of_scene("plaza", 0..100).into_iter();
-    let crowd = crowd.map(|(frame, ..)| frame).collect::<BTreeSet<_>>();
-    let frames: Vec<i64> = crowd.into_iter().take(10).collect();
-    let until = frames[frames.len() - 1] + 1;
     [
-        ("hall", three),
-        ("Tür, 2", own_tracks::of_scene("plaza", frames[0]..until)),
+        ("hall", own_tracks::three_pedestrians(12)),
+        ("Tür, 2", own_tracks::of_scene("plaza", 0..100)),
     ]
 }
 
-fn interleaved(line: impl Fn(&str, &Row) -> String) -> String {
-    let mut text = String::new();
+/// The table of the recordings.
+fn interleaved() -> String {
+    let mut text = "frame,scene,pedestrian,x,y\n".to_owned();
     let mut queues = recordings().map(|(scene, rows)| (scene, VecDeque::from(rows)));
     while queues.iter().any(|(_, rows)| !rows.is_empty()) {
         for (scene, rows) in &mut queues {
             // The parts do not end with frames, so lines of one scene are between those of a frame of the other.
             for row in rows.drain(..rows.len().min(4)) {
-                text += &line(scene, &row);
+                text += &as_csv(scene, &row);
             }
         }
     }
@@ -177,12 +158,6 @@ fn interleaved(line: impl Fn(&str, &Row) -> String) -> String {
 fn as_csv(scene: &str, (frame, id, x, y): &Row) -> String {
     format!("{frame},\"{scene}\",{id},{x},{y}\n")
 }
-
-fn as_json(scene: &str, (frame, id, x, y): &Row) -> String {
-    format!("{{\"track\":{{\"scene\":\"{scene}\",\"f\":{frame},\"p\":{id},\"x\":{x},\"y\":{y}}}}}\n")
-}
-
-const HEADER: &str = "frame,scene,pedestrian,x,y\n";
 
 #[test]
 fn interleaved_recordings_are_answered_as_each_alone() {
@@ -194,25 +169,21 @@ fn interleaved_recordings_are_answered_as_each_alone() {
         expected.insert(scene.to_owned(), json_lines::<Value>(&finished.succeeds()));
     }
     assert!(expected.values().all(|lines| lines.len() > 20));
-    for text in [HEADER.to_owned() + &interleaved(as_csv), interleaved(as_json)] {
-        let finished = place.run_on(&text, &format!("{LINE} {options}"));
-        assert!(!finished.stderr.contains("error"), "{finished:?}");
-        let mut answers = BTreeMap::<String, Vec<Value>>::new();
-        for mut line in json_lines::<Value>(&finished.succeeds()) {
-            let scene = line.as_object_mut().unwrap().remove("scene").unwrap();
-            answers
-                .entry(scene.as_str().unwrap().to_owned())
-                .or_default()
-                .push(line);
-        }
-        assert!(answers == expected, "other answers than alone");
+    let finished = place.run_on(&interleaved(), &format!("{LINE} {options}"));
+    assert!(!finished.stderr.contains("error"), "{finished:?}");
+    let mut answers = BTreeMap::<String, Vec<Value>>::new();
+    for mut line in json_lines::<Value>(&finished.succeeds()) {
+        let scene = line.as_object_mut().unwrap().remove("scene").unwrap();
+        let scene = scene.as_str().unwrap().to_owned();
+        answers.entry(scene).or_default().push(line);
     }
+    assert!(answers == expected, "other answers than alone");
 }
 
 #[test]
 fn a_wrong_line_of_one_scene_leaves_the_others_as_they_are() {
     let place = Place::with_model();
-    let good = HEADER.to_owned() + &interleaved(as_csv);
+    let good = interleaved();
     let answers = place.run_on(&good, &format!("{LINE} --one")).succeeds();
     let mut bad = String::new();
     for (i, line) in good.lines().enumerate() {
@@ -223,7 +194,7 @@ fn a_wrong_line_of_one_scene_leaves_the_others_as_they_are() {
             _ => {}
         }
     }
-    let finished = place.run_on(&bad, &format!("{LINE} --one"));
+    let mut finished = place.run_on(&bad, &format!("{LINE} --one"));
     assert_eq!(finished.code, Some(1), "{finished:?}");
     assert!(finished.stdout == answers, "other answers than without");
     for words in [
@@ -231,7 +202,7 @@ fn a_wrong_line_of_one_scene_leaves_the_others_as_they_are() {
         "this is left out, and the stream goes on",
         "error: standard input: 2 lines or frames were wrong, and were left out",
     ] {
-        assert!(finished.stderr.contains(words), "{words}: {finished:?}");
+        finished = finished.says(words);
     }
 }
 
@@ -239,14 +210,16 @@ fn a_wrong_line_of_one_scene_leaves_the_others_as_they_are() {
 fn what_does_not_fit_scenes_is_refused() {
     let place = Place::with_model();
     std::fs::create_dir(place.at("memories")).unwrap();
-    place.write("scenes.csv", HEADER.to_owned() + &interleaved(as_csv));
-    place.all_fail(&["forecast scenes.csv --model run => a file holds one recording, but this row is of another"]);
+    place.write("scenes.csv", interleaved());
+    let of_another = "a file holds one recording, but this row is of another";
+    place.fails("forecast scenes.csv --model run", &[of_another]);
     let tracks = own_tracks::csv(&own_tracks::three_pedestrians(9));
     let finished = place.run_on(&tracks, &format!("{LINE} --memory memories"));
-    let words = "memories is a folder, and the lines name no scenes";
-    assert!(finished.fails().contains(words));
+    finished
+        .says("memories is a folder, and the lines name no scenes")
+        .fails();
     let finished = place.run_on(&place.text("scenes.csv"), &format!("{LINE} --memory new.memory"));
-    assert!(finished.fails().contains("new.memory is a file of one place"));
+    finished.says("new.memory is a file of one place").fails();
     assert!(!place.at("new.memory").exists());
 }
 
@@ -255,36 +228,27 @@ fn each_scene_has_a_memory_file_of_its_own() {
     let place = Place::with_model();
     std::fs::create_dir(place.at("memories")).unwrap();
     place.write("memories/hall.memory", "damaged");
-    let text = HEADER.to_owned() + &interleaved(as_csv);
+    let text = interleaved();
     let forgetful = place.run_on(&text, &format!("{LINE} --one")).succeeds();
     let finished = place.run_on(&text, &format!("{LINE} --one --memory memories"));
     // The fault of one memory file is reported, and its scene is forecast without memory.
     assert_eq!(finished.code, Some(1), "{finished:?}");
-    assert_eq!(
-        finished
-            .stderr
-            .matches("hall.memory is not a readable scene memory")
-            .count(),
-        1
-    );
+    let told = finished.stderr.matches("hall.memory is not a readable scene memory");
+    assert_eq!(told.count(), 1);
     assert_eq!(finished.stdout.lines().count(), forgetful.lines().count());
     assert_eq!(place.text("memories/hall.memory"), "damaged");
     place.remove("memories/hall.memory");
     place
         .run_on(&text, &format!("{LINE} --one --memory memories"))
         .succeeds();
-    for (scene, file) in [(0, "hall.memory"), (1, "T%C3%BCr%2C%202.memory")] {
-        let memory = SceneMemory::read(&place.at(&format!("memories/{file}"))).unwrap();
-        let mut alone = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
-        // The second scene was observed twice.
-        if scene == 0 {
-            for (frame, people) in own_tracks::frames(&recordings()[scene].1) {
-                alone.observe(frame, people).unwrap();
-            }
-            assert_eq!(memory, alone);
-        }
-        assert!(memory.last_frame().is_some());
+    let memory = |file: &str| SceneMemory::read(&place.at(&format!("memories/{file}"))).unwrap();
+    let mut alone = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
+    for (frame, people) in own_tracks::frames(&recordings()[0].1) {
+        alone.observe(frame, people).unwrap();
     }
+    assert_eq!(memory("hall.memory"), alone);
+    // The second scene was observed twice.
+    assert!(memory("T%C3%BCr%2C%202.memory").last_frame().is_some());
 }
 
 #[test]
@@ -293,19 +257,16 @@ fn a_scene_that_falls_silent_blocks_no_other() {
     let mut live = Live::start(&place, "--frame-step 10 --one");
     // The frame is complete only at the end of the input.
     let silent = [0, 10].map(|frame| as_csv("silent", &(frame, 1, 0.0, 0.0)));
-    live.write(&(HEADER.to_owned() + &silent.concat()));
+    live.write(&("frame,scene,pedestrian,x,y\n".to_owned() + &silent.concat()));
     for frame in 0..6 {
         live.write(&(as_csv("hall", &(10 * frame, 1, 0.5 * frame as f64, 0.0)) + "\n"));
         if frame > 0 {
             let line = live.line();
-            assert!(
-                line["scene"] == "hall" && line["observed_until"] == 10 * frame,
-                "{line}"
-            );
+            let is_expected = line["scene"] == "hall" && line["observed_until"] == 10 * frame;
+            assert!(is_expected, "{line}");
         }
     }
-    let (rest, stderr, code) = live.end();
-    let rest = json_lines::<Value>(&rest);
-    assert_eq!((rest.len(), code), (1, Some(0)), "{stderr}");
+    let rest = json_lines::<Value>(&live.end().succeeds());
+    assert_eq!(rest.len(), 1);
     assert!(rest[0]["scene"] == "silent" && rest[0]["observed_until"] == 10);
 }

@@ -1,7 +1,7 @@
 //! `ddl evaluate`, `ddl goals --measure`, `ddl report`: numbers from a model to the report page.
 
 use ddl::data::{Convention, WindowRule};
-use ddl::eval::ResultRow;
+use ddl::eval::{ResultRow, Scores};
 use ddl::network::weights::save_weights;
 use ddl::network::{ForecastWindows as _, MotionNetwork, StarConfig, TrainingConfig};
 use ddl::report::{ForecastSnapshot, Report};
@@ -91,10 +91,8 @@ fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
     assert!(names.any(|name| name.starts_with("constant velocity")), "{protocol}");
     for row in rows {
         let (scores, of_model) = (&row.scores, &model.scores);
-        assert_eq!(
-            (scores.pedestrians, scores.windows),
-            (of_model.pedestrians, of_model.windows)
-        );
+        let counts = |scores: &Scores| (scores.pedestrians, scores.windows);
+        assert_eq!(counts(scores), counts(of_model));
         assert!(scores.pedestrians > 0 && scores.pedestrians < pedestrians + 40);
         // Pedestrians walk below 3 m/s, so no forecast of 4.8 s can be off by more than this.
         assert!((0.01..15.0).contains(&scores.min_ade), "{scores:?}");
@@ -105,11 +103,8 @@ fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
 /// Uses of the true future are removed one after the other. The second epoch of the run is worse than the first.
 fn check_oracle(rows: &[&ResultRow]) {
     let of = |name: &str| {
-        &rows
-            .iter()
-            .find(|row| row.conditions.forecaster == name)
-            .unwrap()
-            .scores
+        let mut rows = rows.iter();
+        &rows.find(|row| row.conditions.forecaster == name).unwrap().scores
     };
     let of_last = "DDL of its last epoch";
     assert!(of("DDL").min_ade < of(of_last).min_ade);
@@ -161,10 +156,8 @@ fn a_number_goes_from_the_model_to_the_page() {
     assert_eq!(collected.title(), "Corridor");
     // What is given twice is there once.
     assert_eq!(collected.rows(), report.rows());
-    assert_eq!(
-        json::<Vec<ForecastSnapshot>>(&place.text("pages/moments.json")),
-        moments
-    );
+    let of_page: Vec<ForecastSnapshot> = json(&place.text("pages/moments.json"));
+    assert_eq!(of_page, moments);
     assert_eq!(place.text("pages/figures/mine.svg"), "a picture of the user");
     let markdown = place.text("pages/report.md");
     assert!(markdown.lines().next().unwrap().contains("simulated"));
@@ -213,8 +206,6 @@ fn goals_are_measured() {
     assert!(calibration.log_loss.is_finite() && calibration.bins.len() == 10);
     let words = place.ok(measure);
     let nearest_goal = format!("{:.3}", test.all.oracle_fde);
-    assert!(
-        words.contains("nearest goal off") && words.contains(&nearest_goal),
-        "{words}"
-    );
+    let is_told = words.contains("nearest goal off") && words.contains(&nearest_goal);
+    assert!(is_told, "{words}");
 }

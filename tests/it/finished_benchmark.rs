@@ -90,10 +90,8 @@ fn the_main_tables_hold_the_numbers_of_the_report() {
     let place = benchmark("smoke", Convention::Simulated, &[crowd::FOLD]);
     let ids = [1, 2].map(|seed| format!("{}-full-{seed}", crowd::FOLD));
     for id in &ids {
-        place.write(
-            &format!("{id}/finished.json"),
-            json!({"task": id, "seconds": 1.0}).to_string(),
-        );
+        let finished = json!({"task": id, "seconds": 1.0});
+        place.write(&format!("{id}/finished.json"), finished.to_string());
     }
     let said = place.run(COLLECT).stderr;
     let report: Value = json(&place.text("report.json"));

@@ -32,6 +32,10 @@ fn remember(place: &Place, name: &str, rows: &[Row], frame_step: i64) {
     memory.write(&place.at(name)).unwrap();
 }
 
+fn kept(place: &Place, name: &str) -> SceneMemory {
+    SceneMemory::read(&place.at(name)).unwrap()
+}
+
 fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
     let mut hypotheses = Vec::new();
     for (frame, positions) in own_tracks::frames(rows) {
@@ -64,44 +68,26 @@ fn a_stream_cut_in_two_continues_with_its_memory() {
     let [first, second] = [rows(0..50), rows(50..90)];
     // An invalid line ends the first part; the memory until then is kept.
     let input = own_tracks::csv(&first) + "500,1,left,2\n";
-    let before = place.run_on(&input, &format!("{LINE} {KEPT}"));
+    let before = place.run_on(&input, &format!("{LINE} {KEPT}")).says("line ");
     assert_eq!(before.code, Some(1), "{before:?}");
-    assert!(before.stderr.contains("line "), "{before:?}");
     assert_eq!(hypotheses_in(&before.stdout), hypotheses_of(&mut live, &first));
-    assert_eq!(
-        &SceneMemory::read(&place.at("hall.memory")).unwrap(),
-        live.place().unwrap().memory()
-    );
+    assert_eq!(&kept(&place, "hall.memory"), live.place().unwrap().memory());
+    // A session that ends with `clear` is kept as well.
     live.clear();
+    let (mut file, _) = MemoryFile::open(&place.at("cleared.memory")).unwrap();
+    assert_eq!(file.end(live.place().unwrap().clone()).unwrap(), None);
+    assert_eq!(kept(&place, "cleared.memory").summary().frames, 50);
     let input = own_tracks::csv(&second);
     let after = place.run_on(&input, &format!("{LINE} {KEPT}")).succeeds();
     let after = hypotheses_in(&after);
     assert_eq!(after, hypotheses_of(&mut live, &second));
     let forgetful = place.run_on(&input, LINE).succeeds();
     assert!(after.len() > 20 && after != hypotheses_in(&forgetful));
-    assert_eq!(
-        &SceneMemory::read(&place.at("hall.memory")).unwrap(),
-        live.place().unwrap().memory()
-    );
+    assert_eq!(&kept(&place, "hall.memory"), live.place().unwrap().memory());
     // A frame rate inferred from the first two frames is as good as a given one.
     let learned = "forecast - --model run --threads 1 --whole --format jsonl --memory learned.memory";
     place.run_on(&own_tracks::csv(&first), learned).succeeds();
-    let learned = SceneMemory::read(&place.at("learned.memory")).unwrap();
-    assert_eq!(learned.summary().frames, 50);
-}
-
-#[test]
-fn a_session_that_ends_with_clear_is_kept() {
-    let place = Place::with_model();
-    let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
-    let (mut file, memory) = MemoryFile::open(&place.at("hall.memory")).unwrap();
-    let live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(FRAME_STEP).unwrap());
-    let mut live = live.remembering(memory).unwrap();
-    let _ = hypotheses_of(&mut live, &rows(0..50));
-    live.clear();
-    assert_eq!(file.end(live.place().unwrap().clone()).unwrap(), None);
-    let kept = SceneMemory::read(&place.at("hall.memory")).unwrap();
-    assert_eq!(kept.summary().frames, 50);
+    assert_eq!(kept(&place, "learned.memory").summary().frames, 50);
 }
 
 #[test]
@@ -164,15 +150,18 @@ nowhere/hall.memory => nowhere/hall.memory: cannot write this file
 ";
     for case in cases.trim().lines() {
         let (file, words) = case.split_once(" => ").unwrap();
-        let message = place.run_on(&input, &format!("{LINE} --memory {file}")).fails();
-        assert!(message.contains(words), "{case}: {message}");
+        place
+            .run_on(&input, &format!("{LINE} --memory {file}"))
+            .says(words)
+            .fails();
     }
     // The memory would overwrite the forecasts.
     let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));
-    assert!(same.fails().contains("would be lost"));
+    same.says("would be lost").fails();
     let after = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
     assert!(before == after);
-    place.all_fail(&["data damaged.memory --svg hall.svg => damaged.memory is not a readable scene memory"]);
+    let damaged = "damaged.memory is not a readable scene memory";
+    place.fails("data damaged.memory --svg hall.svg", &[damaged]);
     // The other files are summarised nevertheless.
     let finished = place.run("data damaged.memory tracks.csv");
     assert_eq!(finished.code, Some(1));
@@ -188,8 +177,7 @@ fn a_link_is_followed() {
     std::os::unix::fs::symlink("hall.memory", place.at("link.memory")).unwrap();
     let input = own_tracks::csv(&rows(0..60));
     let finished = place.run_on(&input, &format!("{LINE} --memory link.memory"));
-    assert!(finished.stderr.contains("link.memory remembers"), "{finished:?}");
-    finished.succeeds();
+    finished.says("link.memory remembers").succeeds();
     assert!(std::fs::symlink_metadata(place.at("link.memory")).unwrap().is_symlink());
     assert!(!place.read("hall.memory").is_empty() && place.at("hall.memory.lock").is_file());
 }
@@ -202,7 +190,7 @@ fn a_model_without_a_memory_branch_is_refused_before_anything_is_read() {
     proposal.network.memory = None;
     let windows = crowd::training_windows().into_iter().step_by(50);
     drawn_model::write(config, &windows.collect::<Vec<_>>(), &place.at("run"));
-    place.all_fail(&["forecast - --model run --memory hall.memory => has no memory branch"]);
+    place.fails("forecast - --model run --memory hall.memory", &["has no memory branch"]);
 }
 
 #[test]
@@ -211,18 +199,14 @@ fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
     let mut first = Live::start(&place, &format!("--whole --frame-step 10 {KEPT}"));
     first.write(&(own_tracks::csv(&rows(0..30)) + "\n"));
     assert!(first.line()["observed_until"].is_i64());
-    let second = place.run_on("", &format!("{LINE} {KEPT}")).fails();
-    assert!(
-        second.contains("another process, or a watch of this process"),
-        "{second}"
-    );
+    let second = place.run_on("", &format!("{LINE} {KEPT}"));
+    second.says("another process, or a watch of this process").fails();
     #[cfg(unix)]
     {
         use ddl_tests::processes;
         processes::signal(first.child.id(), "TERM");
-        assert_eq!(first.end().2, Some(130));
-        let memory = SceneMemory::read(&place.at("hall.memory")).unwrap();
-        assert!(memory.summary().frames >= 8);
+        assert_eq!(first.end().code, Some(130));
+        assert!(kept(&place, "hall.memory").summary().frames >= 8);
     }
     #[cfg(not(unix))]
     drop(first);
@@ -234,19 +218,14 @@ fn data_draws_a_memory() {
     remember(&place, "hall.memory", &rows(0..200), FRAME_STEP);
     let _ = place.ok("data hall.memory --svg hall.svg");
     let drawn = place.text("hall.svg");
-    for part in [
-        "<svg",
-        " of at most 20000 segments",
-        "class=\"walked w4\"",
-        "class=\"come\"",
-        "class=\"leave\"",
-        "x (m)",
-    ] {
+    let parts = r#"<svg| of at most 20000 segments|class="walked w4"|class="come"|class="leave"|x (m)"#;
+    for part in parts.split('|') {
         assert!(drawn.contains(part), "{part}");
     }
-    place.all_fail(&[
-        "data tracks.csv --svg hall.svg => but 0 were given",
-        "data hall.memory hall.memory --svg both.svg => 2 were given",
-        "data hall.memory --svg hall.memory => would be lost",
-    ]);
+    let cases = "
+tracks.csv --svg hall.svg => but 0 were given
+hall.memory hall.memory --svg both.svg => 2 were given
+hall.memory --svg hall.memory => would be lost
+";
+    place.all_fail("data", cases);
 }

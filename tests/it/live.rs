@@ -1,55 +1,18 @@
 //! Forecasts frame by frame, and those of `ddl forecast -`, which reads from a tracker, agree with forecasts of the
 //! windows of the whole recording.
 
-use ddl::data::{LiveTracks, Observation, PedestrianId, Recording, Window};
+use ddl::data::{LiveTracks, Window};
 use ddl::eval::baseline::ConstantVelocity;
-use ddl::{DdlError, ForecastError, Forecaster as _, LiveForecaster, Variant};
+use ddl::{DdlError, ForecastError, Forecaster as _, LiveForecaster};
 use ddl_tests::made::Made;
-use ddl_tests::own_tracks::{self, Row};
+use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json, json_lines};
+use ddl_tests::program;
 use ddl_tests::program::Finished;
-use ddl_tests::{bits, drawn_model, program};
 use serde_json::Value;
 use std::cell::Cell;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
-
-fn tracks() -> LiveTracks {
-    LiveTracks::with_frame_step(own_tracks::FRAME_STEP).unwrap()
-}
-
-#[test]
-fn live_forecasts_agree_with_forecasts_of_windows() {
-    let model = drawn_model::of(Variant::Full);
-    let there = |&(frame, id, ..): &Row| frame != 180 && !(id == 2 && (frame == 60 || frame >= 160));
-    let rows = own_tracks::three_pedestrians(24).into_iter().filter(there);
-    let seen = rows.map(|(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
-    let recording = Recording::new("live", own_tracks::FRAME_STEP, seen.collect()).unwrap();
-    let mut live = LiveForecaster::with_tracks(&model, tracks());
-    let mut certified = live.clone();
-    let mut windows = recording.observed_windows().into_iter().peekable();
-    let mut forecasts = 0;
-    for &frame in recording.frames() {
-        let pedestrians = recording.at(frame).iter();
-        let pedestrians: Vec<_> = pedestrians.map(|o| (o.pedestrian, o.position)).collect();
-        let now = live.push(frame, pedestrians.iter().copied()).unwrap();
-        let evidence = certified.push_certified(frame, pedestrians).unwrap();
-        let window = windows.next_if(|window| window.frames()[7] == frame);
-        assert_eq!(now.is_some(), window.is_some(), "frame {frame}");
-        let (Some(now), Some(evidence), Some(window)) = (now, evidence, window) else {
-            continue;
-        };
-        forecasts += 1;
-        let forecast = bits::of(&model.forecast(&window).unwrap());
-        assert_eq!(bits::of(&now.forecast), forecast);
-        let windows = std::slice::from_ref(&window);
-        let expected = model.forecast_certified(windows).unwrap().remove(0);
-        assert_eq!(bits::of(&evidence.forecast.forecast), forecast);
-        assert_eq!(evidence.forecast.certificates, expected.certificates);
-    }
-    // Windows at all frames from 70 on, but for 180, which has none.
-    assert_eq!(forecasts, 16);
-}
 
 #[test]
 fn an_error_changes_nothing() {
@@ -63,7 +26,7 @@ fn an_error_changes_nothing() {
         }
         ConstantVelocity::LastStep.forecast_all(windows)
     });
-    let mut live = LiveForecaster::with_tracks(&model, tracks());
+    let mut live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(FRAME_STEP).unwrap());
     live.push(0, pedestrians(0)).unwrap();
     for frame in (10..90).step_by(10) {
         let before = live.tracks().clone();
@@ -112,13 +75,12 @@ impl Live {
         json(&line)
     }
 
-    pub(crate) fn end(mut self) -> (String, String, Option<i32>) {
+    pub(crate) fn end(mut self) -> Finished {
         drop(self.input);
-        let mut rest = String::new();
-        self.output.read_to_string(&mut rest).unwrap();
-        let output = self.child.wait_with_output().unwrap();
-        let stderr = String::from_utf8(output.stderr).unwrap();
-        (rest, stderr, output.status.code())
+        let mut stdout = String::new();
+        self.output.read_to_string(&mut stdout).unwrap();
+        let ended = Finished::new("forecast -".to_owned(), &self.child.wait_with_output().unwrap());
+        Finished { stdout, ..ended }
     }
 }
 
@@ -145,7 +107,9 @@ fn every_frame_is_answered_before_the_next_one() {
             }
         }
     }
-    assert_eq!(live.end(), (String::new(), String::new(), Some(0)));
+    let ended = live.end();
+    assert_eq!(ended.stderr, "");
+    assert_eq!(ended.succeeds(), "");
     assert_eq!(expected.next(), None);
 }
 
@@ -171,12 +135,9 @@ fn two_frames_are_enough_and_a_closed_output_ends_it_quietly() {
     }
     drop(input);
     let finished = Finished::new("forecast -".to_owned(), &child.wait_with_output().unwrap());
-    assert_eq!(finished.code, Some(0), "{finished:?}");
-    assert!(
-        finished.stderr.contains("a step of 0.4 s is taken as 10 frames"),
-        "{finished:?}"
-    );
+    let finished = finished.says("a step of 0.4 s is taken as 10 frames");
     assert_eq!(finished.stderr.lines().count(), 1, "{finished:?}");
+    finished.succeeds();
 }
 
 #[test]
@@ -189,14 +150,11 @@ fn an_invalid_line_is_reported_and_earlier_frames_are_answered() {
         ("80,1,1,2\n", "line 29: pedestrian 1 is in frame 80 already"),
     ] {
         let line = "forecast - --model run --whole --frame-step 10 --format jsonl";
-        let finished = place.run_on(&format!("{good}{bad}"), line);
+        let finished = place.run_on(&format!("{good}{bad}"), line).says(message);
         // Frame 80, which the invalid line ends, is also forecast.
         assert_eq!((finished.stdout.lines().count(), finished.code), (6, Some(1)));
-        let stderr = &finished.stderr;
-        assert!(
-            stderr.starts_with("error: standard input, ") && stderr.contains(message),
-            "{stderr}"
-        );
+        let named = finished.stderr.starts_with("error: standard input, ");
+        assert!(named, "{finished:?}");
     }
 }
 
@@ -218,9 +176,8 @@ fn implausible_input_is_reported_once() {
     for options in ["", "--certificate --one"] {
         let line = format!("{line} --whole {options}");
         let finished = place.run_on(&own_tracks::csv(&rows), &line);
+        let finished = finished.says("first that of pedestrian 4 observed until frame 150");
         let unlike = "motions are unlike the training motions";
         assert_eq!(finished.stderr.matches(unlike).count(), 1, "{finished:?}");
-        let whose = "first that of pedestrian 4 observed until frame 150";
-        assert!(finished.stderr.contains(whose), "{finished:?}");
     }
 }

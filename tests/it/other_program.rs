@@ -1,8 +1,8 @@
 //! `ddl windows` and `ddl evaluate --forecasts`: external forecasts, end to end.
 
 use ddl::data::{Format, WindowRule, parse_recording};
-use ddl::eval::ResultRow;
 use ddl::eval::external::{self, Coverage, ExternalFormat};
+use ddl::eval::{ResultRow, Scores};
 use ddl::report::Report;
 use ddl_tests::place::Place;
 use ddl_tests::skip::skip;
@@ -45,14 +45,17 @@ fn report(place: &Place, folder: &str, name: &str) -> Report {
     for protocol in ["fair", "single"] {
         let [mine, baseline] = [name, BASELINE].map(|name| &row(&report, protocol, name).scores);
         assert_eq!(mine.pedestrians, baseline.pedestrians);
-        for (a, b) in [
-            (mine.min_ade, baseline.min_ade),
-            (mine.min_fde, baseline.min_fde),
-            (mine.joint_ade, baseline.joint_ade),
-            (mine.joint_fde, baseline.joint_fde),
-            (mine.miss_rate, baseline.miss_rate),
-            (mine.collision_rate, baseline.collision_rate),
-        ] {
+        let errors = |of: &Scores| {
+            [
+                of.min_ade,
+                of.min_fde,
+                of.joint_ade,
+                of.joint_fde,
+                of.miss_rate,
+                of.collision_rate,
+            ]
+        };
+        for (a, b) in errors(mine).into_iter().zip(errors(baseline)) {
             assert!((a - b).abs() < 1e-9, "{protocol}: {a} and {b}");
         }
     }
@@ -68,10 +71,8 @@ fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
     for (fold, printed, pedestrians) in [("zara1", "0.428/0.953", 2324), ("hotel", "0.325/0.615", 1026)] {
         let place = Place::empty();
         let recordings_of_fold = format!("--convention star --fold {fold} --data {}", data.display());
-        assert_eq!(
-            place.ok(&format!("windows {recordings_of_fold} --output windows.jsonl")),
-            ""
-        );
+        let windows = format!("windows {recordings_of_fold} --output windows.jsonl");
+        assert_eq!(place.ok(&windows), "");
         if !python_forecasts(&place) {
             return;
         }
@@ -79,10 +80,8 @@ fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
         let summary = place.ok(&format!("{evaluate} {recordings_of_fold}"));
         let line = summary.lines().find(|line| line.ends_with("  mine"));
         let line = line.unwrap();
-        assert!(
-            line.contains(printed) && line.contains(&pedestrians.to_string()),
-            "{line}"
-        );
+        let is_expected = line.contains(printed) && line.contains(&pedestrians.to_string());
+        assert!(is_expected, "{line}");
         let report = report(&place, "results", "mine");
         let mine = row(&report, "fair", "mine");
         let selection = mine.conditions.selection.as_deref().unwrap();
@@ -139,13 +138,9 @@ forecasts.csv => cannot read forecasts.csv
 windows.jsonl => windows.jsonl, line 1, hypotheses: is missing
 forecasts.jsonl --window-rule published => match no pedestrian of the windows
 ";
-    for case in cases.trim().lines() {
-        place.all_fail(&[&format!("{EVALUATE} {case}")]);
-    }
-    place.all_fail(&[
-        "evaluate --convention simulated --fold doorway --forecasts forecasts.jsonl => \
-         the windows are of doorway, the file also of plaza",
-    ]);
+    place.all_fail(EVALUATE, cases);
+    let other_fold = "evaluate --convention simulated --fold doorway --forecasts forecasts.jsonl";
+    place.fails(other_fold, &["the windows are of doorway, the file also of plaza"]);
 }
 
 #[test]

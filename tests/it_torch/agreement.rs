@@ -1,6 +1,6 @@
 //! The kernels against libtorch: forecasts of the built-in models on their test scenes.
 
-use ddl::data::{Convention, Dataset, Window, WindowRule};
+use ddl::data::{Convention, Window, WindowRule};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, ModelSource, Remembering};
 use ddl_core::distance;
 use ddl_tests::recordings;
@@ -52,10 +52,9 @@ impl Difference {
 
 #[test]
 fn built_in_models_agree_with_libtorch_on_their_test_scenes() {
-    let Some(folder) = recordings::star_folder() else {
+    let Some(dataset) = recordings::dataset(Convention::Star) else {
         return;
     };
-    let dataset = Dataset::load(Convention::Star, &folder).unwrap();
     let stride = std::env::var("DDL_AGREEMENT_STRIDE").map_or(STRIDE, |text| text.parse().unwrap());
     for name in dataset.fold_names() {
         let source = ModelSource::Builtin(name.parse::<BuiltinModel>().unwrap());

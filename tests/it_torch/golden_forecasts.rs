@@ -17,10 +17,5 @@ fn golden_forecasts_agree_with_libtorch() {
         std::fs::write(file, format!("{{\n{}\n}}\n", models.join(",\n"))).unwrap();
         return;
     }
-    let file = golden::file();
-    for model in BuiltinModel::ALL {
-        for (computed, stored) in reference(model).iter().zip(&file[model.name()]) {
-            computed.assert_near(stored, model.name());
-        }
-    }
+    golden::check(reference);
 }

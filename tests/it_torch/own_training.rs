@@ -1,7 +1,7 @@
 //! Training on own recordings, alone and with the built-in models: evaluation on the validation part, and starting
 //! weights.
 
-use ddl::data::{Convention, Dataset, Format, write_recording};
+use ddl::data::{Convention, Format, write_recording};
 use ddl::{RunConfig, RunDirectory};
 use ddl_tests::place::Place;
 use ddl_tests::{own_tracks, recordings};
@@ -250,10 +250,9 @@ fn a_run_remembers_rate_and_homography() {
 /// Errors on recordings that the starting model was trained on are too small, which is told.
 #[test]
 fn a_starting_model_that_knows_the_recordings_is_told() {
-    let Some(folder) = recordings::star_folder() else {
+    let Some(dataset) = recordings::dataset(Convention::Star) else {
         return;
     };
-    let dataset = Dataset::load(Convention::Star, &folder).unwrap();
     let known = dataset.recording("zara03").unwrap();
     let place = Place::empty();
     place.write("mine/walk.csv", write_recording(known, Format::Table).unwrap());

@@ -20,12 +20,9 @@ pub fn windows(count: usize, most: usize) -> Vec<Window> {
     let fold = dataset().fold(FOLD).expect("the simulated scene exists");
     let mut fitting = fold.test_windows(WindowRule::Complete);
     fitting.retain(|window| (2..=most).contains(&window.len()));
-    assert!(
-        fitting.len() >= count,
-        "{count} windows requested, {} available",
-        fitting.len()
-    );
-    let stride = fitting.len() / count;
+    let available = fitting.len();
+    assert!(available >= count, "{count} windows requested, {available} available");
+    let stride = available / count;
     fitting.into_iter().step_by(stride).take(count).collect()
 }
 

@@ -135,7 +135,7 @@ fn json(data: &impl serde::Serialize) -> Vec<u8> {
 }
 
 /// The file of an expert library: x and y of the 20 positions of each track, one track after the other.
-pub fn experts(config: &RunConfig, positions: &[f64]) -> Vec<u8> {
+fn experts(config: &RunConfig, positions: &[f64]) -> Vec<u8> {
     let bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();
     let shape = vec![positions.len() / 40, 20, 2];
     let tracks = TensorView::new(Dtype::F64, shape, &bytes).expect("the tracks are complete");

@@ -1,6 +1,6 @@
 //! The contents of a folder, to check that a command wrote nothing, or the same bytes again.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Every file below a folder with its bytes (a link with its target), and every folder with `None`, by relative path.
@@ -16,19 +16,19 @@ pub fn read(folder: &Path) -> Contents {
             let entry = entry.expect("the folder can be listed");
             let (path, kind) = (entry.path(), entry.file_type().expect("the kind of a file"));
             let relative = path.strip_prefix(folder).unwrap_or(&path).to_owned();
-            if kind.is_dir() {
-                contents.insert(relative, None);
+            let content = if kind.is_dir() {
                 waiting.push(path);
+                None
             } else if kind.is_symlink() {
                 let target = std::fs::read_link(&path).expect("the link can be read");
-                contents.insert(relative, Some(target.into_os_string().into_encoded_bytes()));
+                Some(target.into_os_string().into_encoded_bytes())
             } else if kind.is_file() {
-                let bytes = std::fs::read(&path).expect("the file can be read");
-                contents.insert(relative, Some(bytes));
+                Some(std::fs::read(&path).expect("the file can be read"))
             } else {
                 // A pipe is not opened: that would wait for a writer.
-                contents.insert(relative, Some(Vec::new()));
-            }
+                Some(Vec::new())
+            };
+            contents.insert(relative, content);
         }
     }
     contents
@@ -46,26 +46,12 @@ pub fn write(contents: &Contents, folder: &Path) {
     }
 }
 
-/// Names of the files and folders that differ, for a message that does not print megabytes.
-pub fn differences(before: &Contents, after: &Contents) -> Vec<String> {
-    let names: std::collections::BTreeSet<&PathBuf> = before.keys().chain(after.keys()).collect();
-    names
-        .into_iter()
-        .filter_map(|name| {
-            let what = match (before.get(name), after.get(name)) {
-                (None, _) => "is new",
-                (_, None) => "is gone",
-                (Some(old), Some(new)) if old != new => "has changed",
-                _ => return None,
-            };
-            Some(format!("{} {what}", name.display()))
-        })
-        .collect()
-}
-
-/// Asserts that nothing differs.
+/// Asserts that nothing differs; the message names what does, and does not print megabytes.
 pub fn assert_same(before: &Contents, after: &Contents) {
-    assert_eq!(differences(before, after), Vec::<String>::new());
+    let names: BTreeSet<&PathBuf> = before.keys().chain(after.keys()).collect();
+    let differ = |name: &&PathBuf| before.get(*name) != after.get(*name);
+    let different: Vec<_> = names.into_iter().filter(differ).collect();
+    assert!(different.is_empty(), "new, gone or changed: {different:?}");
 }
 
 /// Files with temporary names anywhere below a folder: unfinished files.

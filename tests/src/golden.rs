@@ -1,7 +1,7 @@
 //! Golden forecasts of a synthetic scene, stored in the repository (`tests/golden`).
 
 use ddl::data::{PedestrianId, Position, Window};
-use ddl::{Ddl, Forecaster as _};
+use ddl::{BuiltinModel, Ddl, Forecaster as _};
 use ddl_core::distance;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -25,9 +25,17 @@ pub struct Golden {
     step_6: Vec<Position>,
 }
 
-/// The stored forecasts, by model.
-pub fn file() -> BTreeMap<String, Vec<Golden>> {
-    serde_json::from_str(include_str!("../golden/forecasts.json")).expect("the file is valid")
+/// Panics unless the forecasts of every built-in model agree with the stored ones.
+pub fn check(forecasts: impl Fn(BuiltinModel) -> Vec<Golden>) {
+    let file = include_str!("../golden/forecasts.json");
+    let stored: BTreeMap<String, Vec<Golden>> = serde_json::from_str(file).expect("the file is valid");
+    for model in BuiltinModel::ALL {
+        let (computed, stored) = (forecasts(model), &stored[model.name()]);
+        assert_eq!(computed.len(), stored.len());
+        for (computed, stored) in computed.iter().zip(stored) {
+            computed.assert_near(stored, model.name());
+        }
+    }
 }
 
 /// Ten pedestrians: side by side, head on, turning, standing, running, slowing down, noisy, far from all others.
@@ -73,7 +81,7 @@ impl Golden {
     }
 
     /// Panics, naming the difference, unless both agree up to rounding.
-    pub fn assert_near(&self, stored: &Self, model: &str) {
+    fn assert_near(&self, stored: &Self, model: &str) {
         let name = format!("{model}, pedestrian {}", stored.pedestrian);
         assert_eq!(self.pedestrian, stored.pedestrian, "{name}");
         assert!((self.familiarity - stored.familiarity).abs() < 1e-9, "{name}");

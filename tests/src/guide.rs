@@ -13,36 +13,19 @@ use ddl::Variant;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Commands that take minutes or need recordings of other places, by page and beginning; they are only begun.
-pub const LONG: &[(&str, &str)] = &[
-    ("README.md", "ddl train --convention simulated"),
-    ("README.md", "ddl evaluate --model runs/plaza"),
-    ("docs/memory.md", "ddl"),
-    ("docs/performance.md", "/usr/bin/time ddl"),
-    ("docs/performance.md", "ddl"),
-    ("docs/program.md", "ddl evaluate --fold zara1"),
-    ("docs/program.md", "ddl goals --model runs/eth --measure"),
-    ("docs/program.md", "ddl train --fold eth --only-goals"),
-    ("docs/program.md", "ddl train --fold zara1"),
-    ("docs/published.md", "ddl"),
-    ("docs/training.md", "ddl train --data recordings --out runs/own"),
-    ("docs/tried.md", "ddl"),
-];
+/// Commands that take minutes or need recordings of other places, as lines `PAGE: BEGINNING`; they are only begun.
+pub const LONG: &str = include_str!("../guide/long.txt");
 
-/// Commands that need another machine or another tool, by page and beginning.
-pub const ELSEWHERE: &[(&str, &str)] = &[
-    ("docs/gpu.md", ""),
-    ("docs/libtorch.md", "export LIBTORCH="),
-    ("docs/rust.md", "eval \"$(cargo xtask setup --env)\""),
-    ("crates/ddl-python/README.md", "pip install"),
-];
+/// Commands that need another machine or another tool, as lines `PAGE: BEGINNING`.
+pub const ELSEWHERE: &str = include_str!("../guide/elsewhere.txt");
 
 /// Interrupts a command after a few seconds.
 const BEGIN: &str = "timeout --preserve-status --signal INT 3 bash";
 
 /// Whether a command has this page and beginning.
-pub fn begins(page: &str, command: &Command, (entry_page, start): (&str, &str)) -> bool {
-    page == entry_page && command.typed.starts_with(start)
+pub fn begins(page: &str, command: &Command, entry: &str) -> bool {
+    let (entry_page, start) = entry.split_once(':').unwrap();
+    page == entry_page && command.typed.starts_with(start.trim_start())
 }
 
 /// The folder of the workspace.
@@ -63,7 +46,7 @@ fn text_of(page: &str) -> String {
 /// Runs the commands of a page in one shell, and compares their outputs with the page.
 pub fn check(page: &str) {
     let text = text_of(page);
-    let is_on = |list: &[(&str, &str)], command: &Command| list.iter().any(|&entry| begins(page, command, entry));
+    let is_on = |list: &str, command: &Command| list.lines().any(|entry| begins(page, command, entry));
     let datasets = recordings::star_folder();
     let mut commands = console::commands(&text);
     for command in &mut commands {
@@ -94,36 +77,31 @@ pub fn check(page: &str) {
     shell.envs(datasets.as_ref().map(|datasets| ("DDL_DATASETS", datasets)));
     let shell = shell.output().unwrap();
 
-    let (mut faults, mut new_text) = (String::new(), text.clone());
+    let (mut faults, mut new_text) = (Vec::new(), text.clone());
     for (i, command) in commands.iter().enumerate().rev() {
         let note = |kind: &str| std::fs::read_to_string(notes.path().join(format!("{i}.{kind}")));
         let (output, code) = (note("output").unwrap_or_default(), note("code").unwrap_or_default());
-        let (line, typed, code) = (command.line, &command.typed, code.trim());
+        let code = code.trim();
+        let place = format!("{page}:{}: `{}`", command.line, command.typed);
         if is_begun(command) {
             // No recordings, no such run: 1. Interrupted: 130. Invalid arguments: 2.
             if !["0", "1", "130"].contains(&code) {
-                let _ = writeln!(
-                    faults,
-                    "{page}:{line}: `{typed}` cannot be begun: exit code {code}\n{output}"
-                );
+                faults.push(format!("{place} cannot be begun: exit code {code}\n{output}"));
             }
             continue;
         }
         let expected = shown::exit_code(command);
         if code != expected {
-            let _ = writeln!(
-                faults,
-                "{page}:{line}: `{typed}`: exit code {code}, not {expected}\n{output}"
-            );
+            faults.push(format!("{place}: exit code {code}, not {expected}\n{output}"));
         } else if let Some(lines) = shown::replacement(command, &output) {
-            let _ = writeln!(faults, "{page}:{line}: `{typed}` prints something else:\n{output}");
+            faults.push(format!("{place} prints something else:\n{output}"));
             new_text = shown::replaced(&new_text, command, &lines);
         }
     }
     if std::env::var_os("DDL_WRITE_SHOWN").is_some() {
         std::fs::write(checkout().join(page), new_text).unwrap();
     }
-    assert!(faults.is_empty(), "{faults}{shell:?}");
+    assert!(faults.is_empty(), "{}\n{shell:?}", faults.join("\n"));
 }
 
 /// Writes what a reader of the page has before the first command: `target/release/ddl`, the checkout's `crates` and

@@ -48,14 +48,10 @@ fn mount(arguments: &[&str], folder: &Path) -> Option<()> {
         Err(error) => error.to_string(),
     };
     let reason = format!("nothing can be mounted: {reason}");
-    if is_root() {
+    let user = Command::new("id").arg("-u").output();
+    if user.is_ok_and(|user| user.stdout == b"0\n") {
         return skip(reason);
     }
     eprintln!("skipped, {reason}");
     None
-}
-
-fn is_root() -> bool {
-    let output = Command::new("id").arg("-u").output();
-    output.is_ok_and(|output| output.stdout == b"0\n")
 }

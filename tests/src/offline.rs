@@ -2,6 +2,7 @@
 
 use crate::place::Place;
 use crate::program::{self, Finished};
+use std::path::Path;
 use std::process::Command;
 
 /// The command that runs a program without the network.
@@ -11,14 +12,11 @@ pub type Way = &'static [&'static str];
 /// permitted.
 pub fn way() -> Option<Way> {
     let ways: [Way; 2] = [&["unshare", "-n"], &["unshare", "-r", "-n"]];
-    let interfaces = |way: &Way| {
-        let mut command = Command::new(way[0]);
-        let output = command.args(&way[1..]).args(["cat", "/proc/net/dev"]).output().ok()?;
-        let interface_table = String::from_utf8_lossy(&output.stdout).into_owned();
-        output.status.success().then_some(interface_table)
-    };
     for way in ways {
-        if let Some(interface_table) = interfaces(&way) {
+        let mut command = Command::new(way[0]);
+        let output = command.args(&way[1..]).args(["cat", "/proc/net/dev"]).output();
+        if let Some(output) = output.ok().filter(|output| output.status.success()) {
+            let interface_table = String::from_utf8_lossy(&output.stdout);
             let lines = interface_table.lines().skip(2);
             let names: Vec<_> = lines.filter_map(|line| line.trim().split(':').next()).collect();
             assert_eq!(names, ["lo"], "more than the loopback interface, which is down");
@@ -31,19 +29,11 @@ pub fn way() -> Option<Way> {
 
 /// Runs the program without a network.
 pub fn run(way: Way, place: &Place, line: &str) -> Finished {
-    let plain = program::command(place.path(), line);
-    let mut command = Command::new(way[0]);
-    command
+    let mut command = program::undisturbed(Path::new(way[0]), place.path(), "");
+    let command = command
         .args(&way[1..])
-        .arg(plain.get_program())
-        .args(plain.get_args())
-        .current_dir(place.path());
-    for (name, value) in plain.get_envs() {
-        match value {
-            Some(value) => command.env(name, value),
-            None => command.env_remove(name),
-        };
-    }
+        .arg(program::path())
+        .args(line.split_whitespace());
     let output = command.output().expect("`unshare` can be started");
     Finished::new(format!("without a network: ddl {line}"), &output)
 }

@@ -25,53 +25,44 @@ use proptest::test_runner::{TestRng, TestRunner};
 use std::panic::{catch_unwind, resume_unwind};
 use std::path::{Path, PathBuf};
 
-/// The inputs that the edits of a plain test start from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Seeds {
-    /// The files of the reader's folder in `tests/fuzz/corpus`.
-    Corpus,
-    /// None: the test function edits a valid file itself.
-    None,
-}
-
 /// The test function of a reader, with the name of its fuzz target.
 #[derive(Debug, Clone, Copy)]
-pub struct Reader(&'static str, Seeds, fn(&[u8]));
+pub struct Reader(&'static str, fn(&[u8]));
+
+/// The readers whose test function edits a valid file itself. The edits of a plain test of the others start from the
+/// files of the reader's folder in `tests/fuzz/corpus`.
+const EDITING: [&str; 5] = ["scene_memory", "packed_model", "weights", "experts", "training_state"];
 
 /// The readers that need no libtorch.
 pub const READERS: [Reader; 21] = [
-    Reader("table", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Table)),
-    Reader("star_csv", Seeds::Corpus, |bytes| tracks::check(bytes, Format::StarCsv)),
-    Reader("social_gan", Seeds::Corpus, |bytes| {
-        tracks::check(bytes, Format::SocialGan);
-    }),
-    Reader("trajnet", Seeds::Corpus, |bytes| tracks::check(bytes, Format::TrajNet)),
-    Reader("obsmat", Seeds::Corpus, |bytes| tracks::check(bytes, Format::Obsmat)),
-    Reader("own_tracks", Seeds::Corpus, own_tracks::read),
-    Reader("stream", Seeds::Corpus, stream::read),
-    Reader("live_tracks", Seeds::Corpus, live_tracks::read),
-    Reader("mcap", Seeds::Corpus, logs::read),
-    Reader("homography", Seeds::Corpus, values::homography),
-    Reader("foreign_json_lines", Seeds::Corpus, |bytes| {
+    Reader("table", |bytes| tracks::check(bytes, Format::Table)),
+    Reader("star_csv", |bytes| tracks::check(bytes, Format::StarCsv)),
+    Reader("social_gan", |bytes| tracks::check(bytes, Format::SocialGan)),
+    Reader("trajnet", |bytes| tracks::check(bytes, Format::TrajNet)),
+    Reader("obsmat", |bytes| tracks::check(bytes, Format::Obsmat)),
+    Reader("own_tracks", own_tracks::read),
+    Reader("stream", stream::read),
+    Reader("live_tracks", live_tracks::read),
+    Reader("mcap", logs::read),
+    Reader("homography", values::homography),
+    Reader("foreign_json_lines", |bytes| {
         external::check(bytes, ExternalFormat::JsonLines);
     }),
-    Reader("foreign_table", Seeds::Corpus, |bytes| {
-        external::check(bytes, ExternalFormat::Table);
-    }),
-    Reader("report", Seeds::Corpus, values::report),
-    Reader("moments", Seeds::Corpus, values::moments),
-    Reader("goal_params", Seeds::Corpus, values::goal_params),
-    Reader("scene_memory", Seeds::None, scene_memory::read),
-    Reader("packed_model", Seeds::None, model_files::packed_model),
-    Reader("run_config", Seeds::Corpus, model_files::run_config),
-    Reader("metrics", Seeds::Corpus, model_files::metrics),
-    Reader("weights", Seeds::None, model_files::weights),
-    Reader("experts", Seeds::None, model_files::experts),
+    Reader("foreign_table", |bytes| external::check(bytes, ExternalFormat::Table)),
+    Reader("report", values::report),
+    Reader("moments", values::moments),
+    Reader("goal_params", values::goal_params),
+    Reader("scene_memory", scene_memory::read),
+    Reader("packed_model", model_files::packed_model),
+    Reader("run_config", model_files::run_config),
+    Reader("metrics", model_files::metrics),
+    Reader("weights", model_files::weights),
+    Reader("experts", model_files::experts),
 ];
 
 /// The readers that need libtorch.
 #[cfg(feature = "torch")]
-pub const TORCH_READERS: [Reader; 1] = [Reader("training_state", Seeds::None, training_state::read)];
+pub const TORCH_READERS: [Reader; 1] = [Reader("training_state", training_state::read)];
 
 /// Edited inputs of each reader in a plain test, unless `PROPTEST_CASES` is set.
 const CASES: u32 = 1000;
@@ -84,12 +75,12 @@ pub fn read(name: &str, bytes: &[u8]) {
     const TORCH_READERS: [Reader; 0] = [];
     let mut readers = READERS.iter().chain(&TORCH_READERS);
     let reader = readers.find(|reader| reader.0 == name);
-    (reader.unwrap_or_else(|| panic!("no reader {name}")).2)(bytes);
+    (reader.unwrap_or_else(|| panic!("no reader {name}")).1)(bytes);
 }
 
 /// Passes every seed of a reader to it, with truncations and random edits, the same ones in every run.
-pub fn check(Reader(name, seeds, read): Reader) {
-    let seeds = files(name, seeds);
+pub fn check(Reader(name, read): Reader) {
+    let seeds = files(name);
     for (path, seed) in &seeds {
         let stride = seed.len().div_ceil(TRUNCATIONS).max(1);
         for length in (0..seed.len()).step_by(stride).chain([seed.len()]) {
@@ -119,9 +110,9 @@ pub fn check(Reader(name, seeds, read): Reader) {
 }
 
 /// The seeds of a reader with their files, and no bytes.
-fn files(name: &str, kind: Seeds) -> Vec<(PathBuf, Vec<u8>)> {
+fn files(name: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let mut seeds = vec![(PathBuf::from("no file"), Vec::new())];
-    if kind == Seeds::Corpus {
+    if !EDITING.contains(&name) {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(name);
         let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
         for entry in entries {

@@ -134,11 +134,11 @@ impl Place {
         }
     }
 
-    /// Commands that must fail, each with words of the message: `COMMAND => WORDS`.
-    pub fn all_fail(&self, lines: &[&str]) {
-        for line in lines {
-            let (line, words) = line.split_once(" => ").expect("a command and words");
-            self.fails(line, &[words]);
+    /// Commands that must fail and begin alike, each with words of the message: lines `REST OF THE COMMAND => WORDS`.
+    pub fn all_fail(&self, start: &str, cases: &str) {
+        for case in cases.trim().lines() {
+            let (rest, words) = case.split_once(" => ").expect("a command and words");
+            self.fails(&format!("{start} {rest}"), &[words]);
         }
     }
 

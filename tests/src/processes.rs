@@ -2,6 +2,7 @@
 //! are skipped with a message.
 
 use std::process::{Child, Command, ExitStatus};
+use std::str::FromStr;
 use std::time::Duration;
 
 /// Clock ticks per second in `/proc`.
@@ -9,33 +10,33 @@ const TICKS_A_SECOND: f64 = 100.0;
 
 /// Processor time of the process so far, user and system time of all threads. Also available after its end, until its
 /// exit status has been read.
-pub fn processor_time(id: u32) -> Option<Duration> {
+fn processor_time(id: u32) -> Option<Duration> {
+    let ticks: f64 = stat::<f64>(id, 11)? + stat::<f64>(id, 12)?;
+    Some(Duration::from_secs_f64(ticks / TICKS_A_SECOND))
+}
+
+/// A field of the status of a process, counted from its state, which is field 0.
+fn stat<T: FromStr>(id: u32, field: usize) -> Option<T> {
     let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
     // The second field is the program's name in parentheses, which may contain any characters.
     let (_, fields) = stat.rsplit_once(')')?;
-    let ticks: Vec<f64> = fields
-        .split_whitespace()
-        .skip(11) // state and ten numbers
-        .take(2)
-        .map(|field| field.parse().ok())
-        .collect::<Option<_>>()?;
-    Some(Duration::from_secs_f64(ticks.iter().sum::<f64>() / TICKS_A_SECOND))
+    fields.split_whitespace().nth(field)?.parse().ok()
 }
 
 /// Bytes of this process that are resident or swapped out.
 pub fn resident_bytes() -> Option<u64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let kibibytes = |name: &str| -> Option<u64> {
-        let line = status.lines().find_map(|line| line.strip_prefix(name))?;
-        line.trim().strip_suffix("kB")?.trim().parse().ok()
-    };
-    Some(1024 * (kibibytes("VmRSS:")? + kibibytes("VmSwap:").unwrap_or(0)))
+    let id = std::process::id();
+    Some(status_bytes(id, "VmRSS:")? + status_bytes(id, "VmSwap:").unwrap_or(0))
 }
 
 /// Peak resident bytes of a process.
 pub fn peak_bytes(id: u32) -> Option<u64> {
+    status_bytes(id, "VmHWM:")
+}
+
+fn status_bytes(id: u32, name: &str) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{id}/status")).ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix(name))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(1024 * kibibytes)
 }
@@ -66,7 +67,8 @@ pub fn signal(id: u32, name: &str) {
 pub fn with_descendants(id: u32) -> Vec<u32> {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
-    let pairs: Vec<(u32, u32)> = ids.filter_map(|id| Some((parent(id)?, id))).collect();
+    // With the parent of each.
+    let pairs: Vec<(u32, u32)> = ids.filter_map(|id| Some((stat::<u32>(id, 1)?, id))).collect();
     let mut family = vec![id];
     let mut next = 0;
     while let Some(&of) = family.get(next) {
@@ -74,12 +76,6 @@ pub fn with_descendants(id: u32) -> Vec<u32> {
         family.extend(pairs.iter().filter(|(parent, _)| *parent == of).map(|(_, id)| id));
     }
     family
-}
-
-fn parent(id: u32) -> Option<u32> {
-    let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
-    let (_, fields) = stat.rsplit_once(')')?;
-    fields.split_whitespace().nth(1)?.parse().ok() // after the state
 }
 
 /// Runs `measure` in a separate process, a new start of the calling test, because the other tests of the program use

@@ -68,6 +68,13 @@ impl Finished {
         self.stdout
     }
 
+    /// Asserts that its standard error holds these words, and returns it itself.
+    #[must_use]
+    pub fn says(self, words: &str) -> Self {
+        assert!(self.stderr.contains(words), "{words}: {self:#?}");
+        self
+    }
+
     /// Asserts failure, and returns the error message. A failure must have exit code 1, no standard output, and one
     /// line on standard error, behind notes, that begins with `error: ` and repeats nothing.
     pub fn fails(self) -> String {

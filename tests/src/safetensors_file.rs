@@ -26,10 +26,8 @@ pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
 pub fn join(header: &Value, numbers: &[u8]) -> Vec<u8> {
     let mut header = header.to_string();
     // The numbers begin at a multiple of eight bytes.
-    header.extend(std::iter::repeat_n(
-        ' ',
-        header.len().next_multiple_of(8) - header.len(),
-    ));
+    let padding = header.len().next_multiple_of(8) - header.len();
+    header += &" ".repeat(padding);
     let length = (header.len() as u64).to_le_bytes();
     [&length[..], header.as_bytes(), numbers].concat()
 }

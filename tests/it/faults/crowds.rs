@@ -42,52 +42,49 @@ fn measured(place: &Place, line: &str, count: usize, frames: i64) -> (Option<(Du
 
 /// Runs a command with a crowd, and with a crowd a quarter as large. Four times the pedestrians may take slightly more
 /// than four times the time, not sixteen times.
-fn scales(what: &str, line: &str, (count, frames): (usize, i64), lines: fn(usize) -> usize, most: u64) {
-    let place = Place::with_model();
-    let line = format!("forecast {line} --model run --threads 1");
-    let few = count / 4;
-    let quarter = measured(&place, &line, few, frames);
-    let whole = measured(&place, &line, count, frames);
-    assert_eq!((quarter.1, whole.1), (lines(few), lines(count)));
-    let (Some((less, _)), Some((time, bytes))) = (quarter.0, whole.0) else {
-        eprintln!("skipped: this system does not report the time and memory of a process");
-        return;
-    };
-    let [less, time] = [less, time].map(|time| time.as_secs_f64());
-    assert!(
-        time / less < 11.0,
-        "{what}: {less} s, then {time} s for four times the pedestrians"
-    );
-    assert!(bytes < most, "{what}: {bytes} bytes");
-    let mib = bytes >> 20;
-    eprintln!("{what}: {time:.1} s for {count} pedestrians, {less:.1} s for {few}; at most {mib} MiB");
-}
-
 #[test]
-fn one_forecast_per_pedestrian_for_thousands() {
-    let size = (nightly::rounds(2_000, 10_000), 8);
-    let line = "crowd.csv --last --one";
-    scales(
-        "a crowd, one forecast per pedestrian",
-        line,
-        size,
-        |count| 1 + 12 * count,
-        2 * GIB,
-    );
-}
-
-#[test]
-fn twenty_hypotheses_per_pedestrian_for_thousands() {
-    let size = (nightly::rounds(600, 10_000), 8);
-    let line = "crowd.csv --last --format jsonl";
-    let most = nightly::rounds(2, 12) * GIB;
-    scales("a crowd, 20 hypotheses per pedestrian", line, size, |count| count, most);
-}
-
-#[test]
-fn a_live_crowd() {
-    let size = (nightly::rounds(1_000, 10_000), 12); // five of these frames have 8 observed frames
-    let line = "- --one --whole --frame-step 1";
-    let what = "a live crowd, one forecast per pedestrian, 5 frames";
-    scales(what, line, size, |count| 1 + 5 * 12 * count, 2 * GIB);
+fn thousands_of_pedestrians_are_forecast() {
+    for (what, line, (count, frames), lines, most) in [
+        (
+            "a crowd, one forecast per pedestrian",
+            "crowd.csv --last --one",
+            (nightly::rounds(2_000, 10_000), 8),
+            (|count| 1 + 12 * count) as fn(usize) -> usize,
+            2 * GIB,
+        ),
+        (
+            "a crowd, 20 hypotheses per pedestrian",
+            "crowd.csv --last --format jsonl",
+            (nightly::rounds(600, 10_000), 8),
+            |count| count,
+            nightly::rounds(2, 12) * GIB,
+        ),
+        (
+            "a live crowd, one forecast per pedestrian, 5 frames",
+            "- --one --whole --frame-step 1",
+            (nightly::rounds(1_000, 10_000), 12), // five of these frames have 8 observed frames
+            |count| 1 + 5 * 12 * count,
+            2 * GIB,
+        ),
+    ] {
+        let place = Place::with_model();
+        let line = format!("forecast {line} --model run --threads 1");
+        let few = count / 4;
+        let quarter = measured(&place, &line, few, frames);
+        let whole = measured(&place, &line, count, frames);
+        assert_eq!((quarter.1, whole.1), (lines(few), lines(count)));
+        let (Some((less, _)), Some((time, bytes))) = (quarter.0, whole.0) else {
+            eprintln!("skipped: this system does not report the time and memory of a process");
+            continue;
+        };
+        let [less, time] = [less, time].map(|time| time.as_secs_f64());
+        let factor = time / less;
+        assert!(
+            factor < 11.0,
+            "{what}: {factor} times as long for four times the pedestrians"
+        );
+        assert!(bytes < most, "{what}: {bytes} bytes");
+        let mib = bytes >> 20;
+        eprintln!("{what}: {time:.1} s for {count} pedestrians, {less:.1} s for {few}; at most {mib} MiB");
+    }
 }

@@ -4,6 +4,7 @@ use super::EVALUATE;
 use ddl_tests::nightly;
 use ddl_tests::place::{Place, json};
 use serde_json::Value;
+use std::fmt::Display;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -31,17 +32,14 @@ fn pipe(place: &Place) -> String {
     pipe.display().to_string()
 }
 
-fn texts(value: &Value, pointer: &str, pointers: &mut Vec<String>) {
+/// The pointers of the texts in a value.
+fn texts(value: &Value, pointer: &str) -> Vec<String> {
+    let below = |name: &dyn Display, value| texts(value, &format!("{pointer}/{name}"));
     match value {
-        Value::String(_) => pointers.push(pointer.to_owned()),
-        Value::Object(fields) => fields
-            .iter()
-            .for_each(|(name, value)| texts(value, &format!("{pointer}/{name}"), pointers)),
-        Value::Array(items) => items
-            .iter()
-            .enumerate()
-            .for_each(|(i, item)| texts(item, &format!("{pointer}/{i}"), pointers)),
-        _ => {}
+        Value::String(_) => vec![pointer.to_owned()],
+        Value::Object(fields) => fields.iter().flat_map(|(name, value)| below(name, value)).collect(),
+        Value::Array(items) => items.iter().enumerate().flat_map(|(i, item)| below(&i, item)).collect(),
+        _ => Vec::new(),
     }
 }
 
@@ -54,8 +52,7 @@ fn no_text_of_a_configuration_is_opened() {
     let opened = format!("forecast --model run {forged}");
     assert!(!ends(&place, &opened, Duration::from_secs(2)));
     let config: Value = json(&place.text("run/config.json"));
-    let mut pointers = Vec::new();
-    texts(&config, "", &mut pointers);
+    let pointers = texts(&config, "");
     assert!(pointers.len() > 8, "{pointers:?}");
     let commands = ["forecast --model run tracks.csv", "info --model run"];
     let commands = &commands[..nightly::rounds(1, 2)];

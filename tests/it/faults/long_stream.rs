@@ -20,10 +20,8 @@ fn pedestrians(frame: i64) -> Vec<(PedestrianId, Position)> {
         let stays = 20 + id * 7 % 31;
         if age < stays {
             let lane = (id % 5) as f64;
-            pedestrians.push((
-                PedestrianId(id),
-                [0.5 * age as f64, lane + 0.1 * (0.3 * age as f64).sin()],
-            ));
+            let place = [0.5 * age as f64, lane + 0.1 * (0.3 * age as f64).sin()];
+            pedestrians.push((PedestrianId(id), place));
         }
     }
     pedestrians

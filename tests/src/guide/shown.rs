@@ -128,16 +128,11 @@ mod tests {
     fn output_is_replaced_and_what_was_left_out_is_left_out_again() {
         let page = "a\n```console\n$ x\n1\n...\n3\n$ for i in 1; do\n>   echo $i\n> done\n1\n```\nb\n";
         let commands = console::commands(page);
-        let last = replaced(
-            page,
-            &commands[1],
-            &replacement(&commands[1], "8\n9\n").unwrap_or_default(),
-        );
-        let both = replaced(
-            &last,
-            &commands[0],
-            &replacement(&commands[0], "4\n5\n6\n7\n").unwrap_or_default(),
-        );
+        let with = |page: &str, command: &Command, output: &str| {
+            replaced(page, command, &replacement(command, output).unwrap_or_default())
+        };
+        let last = with(page, &commands[1], "8\n9\n");
+        let both = with(&last, &commands[0], "4\n5\n6\n7\n");
         let expected = "a\n```console\n$ x\n4\n...\n7\n$ for i in 1; do\n>   echo $i\n> done\n8\n9\n```\nb\n";
         assert_eq!(both, expected);
     }

@@ -34,11 +34,10 @@ pub(super) fn edited(choices: &mut Unstructured<'_>, whole: &[u8]) -> Vec<u8> {
                 let end = (start + overwritten).min(bytes.len());
                 drop(bytes.splice(start..end, new.iter().copied()));
             }
-            _ => replace_number(
-                &mut bytes,
-                start,
-                ODD_NUMBERS.split(' ').nth(end % 16).unwrap_or_default(),
-            ),
+            _ => {
+                let number = ODD_NUMBERS.split(' ').nth(end % 16).unwrap_or_default();
+                replace_number(&mut bytes, start, number);
+            }
         }
     }
     bytes

@@ -11,9 +11,7 @@ pub(super) fn read(bytes: &[u8]) {
     let mut choices = Unstructured::new(bytes);
     let completeness = [Completeness::Whole, Completeness::Partial][below(&mut choices, 2)];
     let step = 1 + below(&mut choices, 12) as i64;
-    let Ok(tracks) = LiveTracks::with_frame_step(step) else {
-        panic!("a step of {step} is allowed");
-    };
+    let tracks = LiveTracks::with_frame_step(step).expect("such a step is allowed");
     let mut tracks = tracks.with_completeness(completeness);
     let mut frame: i64 = byte(&mut choices).into();
     let mut people_of_late: Vec<(i64, usize)> = Vec::new();

@@ -129,28 +129,27 @@ pub(super) fn experts(choices: &[u8]) {
         static VALID: ValidFile<()> = ValidFile::new("experts.safetensors", without_digest, |path| {
             let mut config = smallest_config();
             config.goals = GoalRecipe::retrieved(1);
-            let positions: Vec<f64> = (0..2 * 20 * 2).map(|i| 0.25 * f64::from(i)).collect();
-            let text = serde_json::to_string(&config).expect("a configuration can be written");
-            std::fs::write(path.with_file_name("config.json"), text).expect("a file can be written");
-            std::fs::write(path, drawn_model::experts(&config, &positions)).expect("a file can be written");
-            std::fs::write(path.with_file_name("fingerprints.bin"), [1, 0, 0, 0]).expect("a file can be written");
+            drawn_model::write(config, &[two_pedestrians()], path.parent().expect("the file lies in a run"));
         });
     }
     VALID.with(|valid| {
-        let run = valid.path.parent().expect("the file lies in a run");
-        drop(valid.read(choices, |(), _| {
+        drop(valid.read(choices, |(), path| {
+            let run = path.parent().expect("the file lies in a run");
             GoalModel::open(&ModelSource::at(run), DeviceChoice::Cpu)
         }));
     });
 }
 
+fn two_pedestrians() -> Window {
+    let walk = |y: f64| (0..20).map(|t| [0.5 * f64::from(t), y]).collect();
+    let ids = [1, 2].map(PedestrianId).to_vec();
+    Window::new("yard", 0, 10, ids, vec![walk(0.0), walk(1.0)]).expect("a window")
+}
+
 /// Writes the smallest packed model.
 fn packed_example(path: &Path) {
     let run = tempfile::tempdir().expect("a folder can be made");
-    let walk = |y: f64| (0..20).map(|t| [0.5 * f64::from(t), y]).collect();
-    let ids = [1, 2].map(PedestrianId).to_vec();
-    let window = Window::new("yard", 0, 10, ids, vec![walk(0.0), walk(1.0)]);
-    drawn_model::write(smallest_config(), &[window.expect("a window")], run.path());
+    drawn_model::write(smallest_config(), &[two_pedestrians()], run.path());
     let model = Ddl::load(run.path(), DeviceChoice::Cpu).expect("the run is complete");
     model.pack(path).expect("a model can be packed");
 }

@@ -8,7 +8,7 @@ use tempfile::TempDir;
 pub(super) struct ValidFile<T> {
     /// What the file is read with.
     pub(super) with: T,
-    pub(super) path: PathBuf,
+    path: PathBuf,
     bytes: Vec<u8>,
     /// Makes an edited file pass the check of its digest, to test the code after it.
     repair: fn(&[u8]) -> Option<Vec<u8>>,

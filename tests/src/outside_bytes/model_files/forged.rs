@@ -7,27 +7,13 @@ use crate::safetensors_file::{join, parts};
 use ddl::{Ddl, DeviceChoice, ModelSource};
 use serde_json::{Value, json};
 
-/// Changes the header of the file, or its entry with configuration and digest.
-type Edit = fn(&mut Value, &mut Value);
-
-const EDITS: [(&str, Edit); 9] = [
-    ("transposed", |header, _| matrix(header).reverse()),
-    ("huge shape", |header, _| *matrix(header) = vec![json!(1_u64 << 62); 2]),
-    ("wider network", |_, entry| {
-        configure(entry, "/star/feed_forward_width", json!(2));
-    }),
-    ("huge network", |_, entry| {
-        configure(entry, "/star/model_width", json!(1_u64 << 40));
-    }),
-    ("huge proposal", |_, entry| {
-        configure(entry, "/goals/proposal/network/width", json!(1_u64 << 40));
-    }),
-    ("negative width", |_, entry| {
-        configure(entry, "/star/model_width", json!(-1));
-    }),
-    ("null", |_, entry| configure(entry, "/star", Value::Null)),
-    ("configuration not JSON", |_, entry| entry["config"] = "{".into()),
-    ("another layout", |_, entry| entry["layout"] = json!(99)),
+/// Fields of the configuration, and other values of them.
+const CONFIGURATIONS: [(&str, &str); 5] = [
+    ("/star/feed_forward_width", "2"),
+    ("/star/model_width", "1099511627776"),
+    ("/goals/proposal/network/width", "1099511627776"),
+    ("/star/model_width", "-1"),
+    ("/star", "null"),
 ];
 
 /// The shape of a tensor that is not that of its transpose.
@@ -36,12 +22,6 @@ fn matrix(header: &mut Value) -> &mut Vec<Value> {
     let mut shapes = tensors.filter_map(|tensor| tensor.get_mut("shape")?.as_array_mut());
     let matrix = shapes.find(|shape| shape.len() == 2 && shape[0] != shape[1]);
     matrix.expect("a model has matrices")
-}
-
-fn configure(entry: &mut Value, pointer: &str, value: Value) {
-    let mut config = json!(smallest_config());
-    *config.pointer_mut(pointer).expect("a field of the configuration") = value;
-    entry["config"] = config.to_string().into();
 }
 
 #[test]
@@ -57,22 +37,36 @@ fn a_packed_model_with_wrong_contents_and_a_right_digest_is_refused() {
         load(&written(&header, numbers)).is_ok(),
         "without an edit it is a model"
     );
-    let edited = EDITS.map(|(name, edit)| {
+    let shaped = |edit: fn(&mut Vec<Value>)| {
         let mut header = header.clone();
-        let entry = header["__metadata__"]["ddl"].as_str().expect("an entry");
-        let mut entry = serde_json::from_str(entry).expect("an entry is JSON");
-        edit(&mut header, &mut entry);
+        edit(matrix(&mut header));
+        written(&header, numbers)
+    };
+    let entry = header["__metadata__"]["ddl"].as_str().expect("an entry");
+    let with = |field: &str, value: Value| {
+        let mut entry: Value = serde_json::from_str(entry).expect("an entry is JSON");
+        entry[field] = value;
+        let mut header = header.clone();
         header["__metadata__"]["ddl"] = entry.to_string().into();
-        (name, written(&header, numbers))
+        written(&header, numbers)
+    };
+    let configured = CONFIGURATIONS.map(|(pointer, value)| {
+        let mut config = json!(smallest_config());
+        *config.pointer_mut(pointer).expect("a field of the configuration") = value.parse().expect("JSON");
+        (pointer, with("config", config.to_string().into()))
     });
     let without_tensors = json!({ "__metadata__": header["__metadata__"] });
     let damaged = [
+        ("transposed", shaped(|shape| shape.reverse())),
+        ("huge shape", shaped(|shape| shape.fill(json!(1_u64 << 62)))),
+        ("configuration not JSON", with("config", "{".into())),
+        ("another layout", with("layout", json!(99))),
         ("without tensors", written(&without_tensors, &[])),
         ("huge header", [&u64::MAX.to_le_bytes()[..], &whole[8..]].concat()),
         ("header alone", whole[..whole.len() - numbers.len()].to_vec()),
         ("longer", [&whole[..], b"\0"].concat()),
     ];
-    for (name, file) in edited.into_iter().chain(damaged) {
+    for (name, file) in configured.into_iter().chain(damaged) {
         let error = load(&file).err().unwrap_or_else(|| panic!("{name} was accepted"));
         eprintln!("{name}: {error}");
         names_file(&error, "packed.safetensors");
