@@ -1,5 +1,6 @@
 //! Errors of this crate.
 
+use nalgebra::SVector;
 use thiserror::Error;
 
 use crate::real::Real;
@@ -41,12 +42,12 @@ pub enum DynamicsError {
 }
 
 #[inline]
-pub(crate) fn ensure_finite<'a, T: Real, const D: usize>(
-    quantity: &'static str,
-    vector: &'a nalgebra::SVector<T, D>,
-) -> Result<&'a nalgebra::SVector<T, D>, DynamicsError> {
+pub(crate) fn ensure_finite<T: Real, const D: usize>(
+    quantity: &str,
+    vector: &SVector<T, D>,
+) -> Result<(), DynamicsError> {
     match vector.iter().position(|x| !x.is_finite()) {
-        None => Ok(vector),
+        None => Ok(()),
         Some(component) => Err(DynamicsError::NonFinite {
             entry: format!("component {component} of the {quantity}"),
             value: vector[component].as_f64(),
@@ -59,9 +60,9 @@ pub(crate) fn ensure_positive<T: Real>(
     quantity: &'static str,
     unit: &'static str,
     value: T,
-) -> Result<T, DynamicsError> {
+) -> Result<(), DynamicsError> {
     if value > T::zero() && value.is_finite() {
-        Ok(value)
+        Ok(())
     } else {
         Err(DynamicsError::NotPositive {
             quantity,
@@ -72,6 +73,6 @@ pub(crate) fn ensure_positive<T: Real>(
 }
 
 #[inline]
-pub(crate) fn ensure_time_step<T: Real>(dt: T) -> Result<T, DynamicsError> {
+pub(crate) fn ensure_time_step<T: Real>(dt: T) -> Result<(), DynamicsError> {
     ensure_positive("the time step", " s", dt)
 }

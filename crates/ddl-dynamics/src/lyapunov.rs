@@ -81,11 +81,9 @@ impl<T: Real> LyapunovCertificate<T> {
                 metrics: self.steps.len(),
             });
         }
-        let certified = self.steps.iter().map(|step| step.potential);
-        let certified = certified.chain([self.final_potential]);
         let distances = path.iter().map(|p| attractor.distance(p));
         // NaN differs from everything.
-        if let Some(position) = distances.zip(certified).position(|(a, b)| a != b) {
+        if let Some(position) = distances.zip(self.potentials()).position(|(a, b)| a != b) {
             return Err(DynamicsError::OtherPath { position });
         }
         let motion = MotionEvidence::new(path, attractor, bounds, self.time_step);
@@ -125,7 +123,10 @@ impl<T: Real> LyapunovCertificate<T> {
         };
         ensure_time_step(dt)?;
         for (step, position) in positions.iter().enumerate() {
-            ensure_measurable(attractor, position).map_err(|cause| DynamicsError::Step {
+            let near = attractor.distance(position).is_finite();
+            let measurable = near.then_some(()).ok_or(DynamicsError::DistanceTooLarge);
+            let measurable = ensure_finite("position", position).and(measurable);
+            measurable.map_err(|cause| DynamicsError::Step {
                 step,
                 cause: Box::new(cause),
             })?;
@@ -219,17 +220,5 @@ impl<T: Real> LyapunovCertificate<T> {
     /// The largest angle between a move and the direction to the goal (radians); 0 if there are no steps.
     pub fn largest_angle(&self) -> T {
         self.steps.iter().map(|step| step.angle).fold(T::zero(), T::max)
-    }
-}
-
-fn ensure_measurable<T: Real, const D: usize>(
-    attractor: &Attractor<T, D>,
-    position: &SVector<T, D>,
-) -> Result<(), DynamicsError> {
-    ensure_finite("position", position)?;
-    if attractor.distance(position).is_finite() {
-        Ok(())
-    } else {
-        Err(DynamicsError::DistanceTooLarge)
     }
 }

@@ -195,26 +195,25 @@ fn entries<T: Real>(metric: &CholeskyMetric<T, 2>) -> Vector3<T> {
     Vector3::new(p.m11, p.m12, p.m22)
 }
 
-/// Mean of the eigenvalues, half their difference, and the cosine and sine of twice the angle of the eigenvector of the
-/// larger one.
-fn axes<T: Real>(p: &Vector3<T>) -> (T, T, [T; 2]) {
+/// The eigenvalues, brought within the range, the larger one first; and the cosine and sine of twice the angle of its
+/// eigenvector.
+fn axes<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> ([T; 2], [T; 2]) {
     let two = T::rounded(2.0);
     let (mean, half) = (p.x / two + p.z / two, p.x / two - p.z / two);
     let (radius, double) = polar(&Vector2::new(half, p.y));
-    (mean, radius, [double.x, double.y])
+    let clamped = [mean + radius, mean - radius].map(|l| l.max(range.smallest).min(range.largest));
+    (clamped, [double.x, double.y])
 }
 
 fn within<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> Vector3<T> {
-    let (mean, radius, [cos, sin]) = axes(p);
-    let (first, second) = clamped(mean, radius, range);
+    let ([first, second], [cos, sin]) = axes(p, range);
     let two = T::rounded(2.0);
     let (middle, half) = (first / two + second / two, first / two - second / two);
     Vector3::new(middle + half * cos, half * sin, middle - half * cos)
 }
 
 fn into_metric<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> CholeskyMetric<T, 2> {
-    let (mean, radius, [cos, sin]) = axes(p);
-    let (first, second) = clamped(mean, radius, range);
+    let ([first, second], [cos, sin]) = axes(p, range);
     // Half of the double angle: (1 + cos, sin) has its direction, and so does (sin, 1 - cos).
     let axis = if cos >= T::zero() {
         Vector2::new(T::one() + cos, sin)
@@ -224,10 +223,4 @@ fn into_metric<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> CholeskyM
     let (_, axis) = polar(&axis);
     let stretch = (first - second).max(T::zero()).sqrt();
     CholeskyMetric::of_axis(axis * stretch, second)
-}
-
-/// Both eigenvalues within the range, the larger one first.
-fn clamped<T: Real>(mean: T, radius: T, range: &EigenvalueRange<T>) -> (T, T) {
-    let clamp = |l: T| l.max(range.smallest).min(range.largest);
-    (clamp(mean + radius), clamp(mean - radius))
 }

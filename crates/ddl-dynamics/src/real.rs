@@ -4,8 +4,6 @@ use nalgebra::RealField;
 
 mod sealed {
     pub trait Sealed {}
-    impl Sealed for f32 {}
-    impl Sealed for f64 {}
 }
 
 /// A floating-point number: `f32` or `f64`. Sealed, because the guarantees of this crate are proved for IEEE 754 binary
@@ -25,30 +23,23 @@ pub trait Real: RealField + Copy + sealed::Sealed {
     fn as_f64(self) -> f64;
 }
 
-impl Real for f32 {
-    const EPSILON: Self = f32::EPSILON;
-    const MIN_POSITIVE: Self = f32::MIN_POSITIVE;
-    const MAX: Self = f32::MAX;
+macro_rules! real {
+    ($($number:ident),*) => {$(
+        impl sealed::Sealed for $number {}
 
-    fn rounded(value: f64) -> Self {
-        value as f32
-    }
+        impl Real for $number {
+            const EPSILON: Self = $number::EPSILON;
+            const MIN_POSITIVE: Self = $number::MIN_POSITIVE;
+            const MAX: Self = $number::MAX;
 
-    fn as_f64(self) -> f64 {
-        f64::from(self)
-    }
+            fn rounded(value: f64) -> Self {
+                value as Self
+            }
+
+            fn as_f64(self) -> f64 {
+                self.into()
+            }
+        }
+    )*};
 }
-
-impl Real for f64 {
-    const EPSILON: Self = f64::EPSILON;
-    const MIN_POSITIVE: Self = f64::MIN_POSITIVE;
-    const MAX: Self = f64::MAX;
-
-    fn rounded(value: f64) -> Self {
-        value
-    }
-
-    fn as_f64(self) -> f64 {
-        self
-    }
-}
+real!(f32, f64);

@@ -8,7 +8,7 @@ use crate::expert::Expert;
 use crate::goal_set::GoalSet;
 use crate::library::ExpertLibrary;
 use crate::motion::Motion;
-use crate::motion_index::{Alike, MotionIndex};
+use crate::motion_index::MotionIndex;
 use crate::points::{Points, is_in_range};
 use crate::span::QuerySpan;
 
@@ -51,7 +51,7 @@ impl Analogues {
 
     pub(crate) fn goals(&self, track: &[[f64; 2]], experts: usize, clusters: usize) -> Result<GoalSet, GoalError> {
         let motion = Motion::new(track, self.time_step)?;
-        let analogues = self.index.nearest(&motion.components, experts);
+        let mut analogues = self.index.nearest(&motion.components, experts);
         let points = self.weighted_deviations(&analogues);
         let (goals, weights) = choose(&points, clusters, STEPS);
         let goals: Vec<_> = goals.iter().map(|&d| motion.place(d)).collect();
@@ -59,21 +59,16 @@ impl Analogues {
             let index = QuerySpan::Observed.velocities() - 1;
             return Err(TrackError::VelocityOverflow { index }.into());
         }
-        let expert = |alike: &Alike| Expert {
-            index: alike.index,
-            distance: alike.distance.into(),
-            mirrored: alike.mirrored,
-        };
-        let experts = analogues.iter().take(REPORTED_EXPERTS).map(expert).collect();
-        Ok(GoalSet::new(goals, weights, experts))
+        analogues.truncate(REPORTED_EXPERTS);
+        Ok(GoalSet::new(goals, weights, analogues))
     }
 
     /// Deviations of the analogues, weighted by similarity; the weights sum to 1.
-    fn weighted_deviations(&self, analogues: &[Alike]) -> Points {
-        let distance = |alike: &Alike| f64::from(alike.distance);
-        let nearest = analogues.first().map_or(0.0, distance);
-        let temperature = TEMPERATURE * analogues.last().map_or(0.0, distance).max(ROUNDING);
-        let likeness = |alike: &Alike| ((nearest - distance(alike)) / temperature).exp();
+    fn weighted_deviations(&self, analogues: &[Expert]) -> Points {
+        let distance = |expert: Option<&Expert>| expert.map_or(0.0, |expert| expert.distance);
+        let nearest = distance(analogues.first());
+        let temperature = TEMPERATURE * distance(analogues.last()).max(ROUNDING);
+        let likeness = |alike: &Expert| ((nearest - alike.distance) / temperature).exp();
         let mut points = Points::default();
         for alike in analogues {
             let [ahead, left] = self.deviations[alike.index];

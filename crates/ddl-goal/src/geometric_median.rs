@@ -112,22 +112,19 @@ impl Pull {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ddl_core::distance;
     use proptest::prelude::*;
-
-    fn apart(a: [f64; 2], b: [f64; 2]) -> f64 {
-        squared_distance(a, b).sqrt()
-    }
 
     /// Found with scipy's Nelder-Mead search to 1e-10 m, outside this project.
     #[test]
     fn the_median_agrees_with_a_numerical_search() {
         let five = [[0.0, 0.0], [4.0, 1.0], [1.0, 5.0], [-2.0, 3.0], [2.5, 2.0]];
         let median = geometric_median(&five, &[1.0, 2.0, 0.5, 1.5, 0.7]);
-        assert!(apart(median, [2.181_201_52, 1.726_761_91]) < 1e-3);
+        assert!(distance(median, [2.181_201_52, 1.726_761_91]) < 1e-3);
         let six = [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [1.0, 9.0], [4.0, 3.0], [6.0, 5.0]];
         let weights = [0.1, 0.2, 0.15, 0.25, 0.2, 0.1];
         let median = geometric_median(&six, &weights);
-        assert!(apart(median, [4.870_987_64, 4.120_806_82]) < 1e-3);
+        assert!(distance(median, [4.870_987_64, 4.120_806_82]) < 1e-3);
         let total = total_distance(median, &six, &weights);
         assert!((total - 4.902_558_409_6).abs() < 1e-7, "{total}");
     }
@@ -138,9 +135,9 @@ mod tests {
         let wide = [[0.0, 0.0], [1.0, 0.0], [-0.5, 0.75_f64.sqrt()]];
         for weight in [0.999, 1.0, 1.001] {
             let median = geometric_median(&wide, &[weight, 1.0, 1.0]);
-            assert!(apart(median, [0.0; 2]) < 1e-2, "{weight}: {median:?}");
+            assert!(distance(median, [0.0; 2]) < 1e-2, "{weight}: {median:?}");
             // A weighted distance not larger than at the corner itself.
-            assert!(weight < 1.0 || apart(median, [0.0; 2]) <= 0.0);
+            assert!(weight < 1.0 || distance(median, [0.0; 2]) <= 0.0);
         }
     }
 
@@ -148,11 +145,11 @@ mod tests {
     #[test]
     fn two_equal_points_meet_half_way() {
         let median = geometric_median(&[[0.1, 0.2], [3.1, 4.2]], &[0.5; 2]);
-        assert!(apart(median, [1.6, 2.2]) < 1e-9, "{median:?}");
+        assert!(distance(median, [1.6, 2.2]) < 1e-9, "{median:?}");
         // A point of weight 0 changes nothing.
         let three = [[-1.0, 0.0], [1.0, 0.0], [0.5, 0.0]];
         let median = geometric_median(&three, &[0.5, 0.5, 0.0]);
-        assert!(apart(median, [0.0, 0.0]) < 1e-9, "{median:?}");
+        assert!(distance(median, [0.0, 0.0]) < 1e-9, "{median:?}");
     }
 
     proptest! {

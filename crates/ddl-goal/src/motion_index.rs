@@ -2,6 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
+use crate::expert::Expert;
 use crate::motion::{COMPONENTS, SIGNED};
 use ddl_simd::{Dispatch, Kernel, Simd};
 
@@ -9,14 +10,6 @@ use ddl_simd::{Dispatch, Kernel, Simd};
 const LANES: usize = 16;
 
 type Block = [[f32; LANES]; COMPONENTS];
-
-/// A track of the library or its mirror image.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Alike {
-    pub(crate) index: usize,
-    pub(crate) mirrored: bool,
-    pub(crate) distance: f32,
-}
 
 #[derive(Clone, Debug)]
 pub(crate) struct MotionIndex {
@@ -44,7 +37,7 @@ impl MotionIndex {
 
     /// The `wanted` nearest of the tracks and their mirror images (all if there are fewer), nearest first; ties by
     /// index, a track before its image.
-    pub(crate) fn nearest(&self, query: &[f32; COMPONENTS], wanted: usize) -> Vec<Alike> {
+    pub(crate) fn nearest(&self, query: &[f32; COMPONENTS], wanted: usize) -> Vec<Expert> {
         let wanted = wanted.min(2 * self.len);
         if wanted == 0 {
             return Vec::new();
@@ -58,7 +51,7 @@ impl MotionIndex {
         });
         keys.sort_unstable();
         keys.truncate(wanted);
-        keys.iter().map(|&key| alike(key)).collect()
+        keys.iter().map(|&key| expert(key)).collect()
     }
 }
 
@@ -135,18 +128,18 @@ fn distance_of(key: u64) -> f32 {
     f32::from_bits((key >> 32) as u32)
 }
 
-fn alike(key: u64) -> Alike {
+fn expert(key: u64) -> Expert {
     let number = key as u32 as usize;
-    Alike {
+    Expert {
         index: number / 2,
         mirrored: number % 2 == 1,
-        distance: distance_of(key),
+        distance: distance_of(key).into(),
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Alike, COMPONENTS, MotionIndex, SIGNED};
+    use super::{COMPONENTS, Expert, MotionIndex, SIGNED};
     use proptest::prelude::*;
 
     fn motion() -> impl Strategy<Value = [f32; COMPONENTS]> {
@@ -155,7 +148,7 @@ mod tests {
         prop_oneof![coarse, prop::array::uniform16(-3.0..3.0_f32)]
     }
 
-    fn sorted(motions: &[[f32; COMPONENTS]], query: &[f32; COMPONENTS]) -> Vec<Alike> {
+    fn sorted(motions: &[[f32; COMPONENTS]], query: &[f32; COMPONENTS]) -> Vec<Expert> {
         let mut candidates = Vec::new();
         for (index, motion) in motions.iter().enumerate() {
             for mirrored in [false, true] {
@@ -165,10 +158,10 @@ mod tests {
                     let m = if i < SIGNED { *m } else { sign * m };
                     sum + (q - m) * (q - m)
                 });
-                candidates.push(Alike {
+                candidates.push(Expert {
                     index,
                     mirrored,
-                    distance,
+                    distance: distance.into(),
                 });
             }
         }

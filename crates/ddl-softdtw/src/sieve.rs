@@ -58,14 +58,9 @@ impl<const D: usize> CandidateSieve<D> {
         for run in &self.blocks.runs {
             self.sweep(dispatch, run, &mut search);
         }
-        let Search {
-            range,
-            largest,
-            selection,
-            ..
-        } = search;
+        let (range, largest) = (search.range, search.largest);
         let margin = |nth_log2| range.margin_log2(nth_log2, largest, D);
-        selection.survivors(range.smallest_accurate_log2(), margin)
+        search.selection.survivors(range.smallest_accurate_log2(), margin)
     }
 
     /// The state of a query before its first block, or `None` if its scores would not be accurate.

@@ -73,9 +73,7 @@ impl SoftDtw {
     /// # Errors
     /// As [`SoftDtw::value`].
     pub fn normalised<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> Result<f64, SoftDtwError> {
-        check(x, 'x')?;
-        check(y, 'y')?;
-        let value = finite(self.value_unchecked(x, y))?;
+        let value = self.value(x, y)?;
         finite(normalise(value, self.self_value(x), self.self_value(y)))
     }
 
@@ -122,17 +120,14 @@ pub(crate) fn check<const D: usize>(steps: &[[f64; D]], sequence: char) -> Resul
     if steps.is_empty() {
         return Err(SoftDtwError::EmptySequence { sequence });
     }
-    for (step, components) in steps.iter().enumerate() {
-        for (component, &value) in components.iter().enumerate() {
-            if !value.is_finite() {
-                return Err(SoftDtwError::NonFinite {
-                    sequence,
-                    step,
-                    component,
-                    value,
-                });
-            }
-        }
+    let numbers = steps.as_flattened();
+    match numbers.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(index) => Err(SoftDtwError::NonFinite {
+            sequence,
+            step: index / D,
+            component: index % D,
+            value: numbers[index],
+        }),
     }
-    Ok(())
 }

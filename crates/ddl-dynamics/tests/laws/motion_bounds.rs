@@ -20,58 +20,41 @@ fn any_bounds() -> impl Strategy<Value = BoundsDraw> {
     (spare, share, 0.01..2.0_f64, velocity, any::<bool>())
 }
 
-/// A path with its goal and bounds, and its certificate; `None` if the numbers are not valid bounds.
-type Within<T> = (
-    Vec<Vector2<T>>,
-    Attractor<T, 2>,
-    MotionBounds<T>,
-    LyapunovCertificate<T>,
-);
-
-fn within<T: Real>(scene: &SceneDraw, (spare, share, dt, velocity, absolute): BoundsDraw) -> Option<Within<T>> {
-    let (start, attractor, dt) = (scene.start::<T, 2>(), scene.attractor(), T::rounded(dt));
+fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCaseResult {
+    let (spare, share, seconds, velocity, absolute) = draw;
+    let (start, attractor, dt) = (scene.start::<T, 2>(), scene.attractor(), T::rounded(seconds));
     let arriving = attractor.distance(&start) / (dt * T::rounded(METRICS as f64));
     let top_speed = (arriving * T::rounded(spare)).max(T::rounded(1e-3));
     let velocity = Vector2::from(velocity).map(T::rounded) * top_speed;
-    let bounds = MotionBounds::new(top_speed, velocity, T::rounded(share))?;
+    let Some(bounds) = MotionBounds::new(top_speed, velocity, T::rounded(share)) else {
+        return Ok(());
+    };
     let bounds = if absolute { bounds.absolute() } else { bounds };
     let schedule = arriving_schedule(scene.metrics(), attractor, bounds, dt).unwrap();
     let flow = NaturalGradientFlow::new(attractor, schedule);
     let path = rollout(&flow, &StableEuler, start, dt, METRICS).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
     let certificate = certificate.within(&path, &attractor, &bounds).unwrap();
-    Some((path, attractor, bounds, certificate))
-}
-
-fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCaseResult {
-    let Some((path, attractor, bounds, certificate)) = within::<T>(scene, draw) else {
-        return Ok(());
-    };
-    let far = path
-        .iter()
-        .chain([attractor.goal()])
-        .map(|p| p.amax().as_f64())
-        .fold(0.0, f64::max);
-    let off = 64.0 * T::EPSILON.as_f64() * far;
-    let dt = draw.2;
+    let sizes = path.iter().chain([attractor.goal()]).map(|p| p.amax().as_f64());
+    let off = 64.0 * T::EPSILON.as_f64() * sizes.fold(0.0, f64::max);
     let top = bounds.top_speed().as_f64();
     let (mut before, mut sideways): (Option<(f64, [f64; 2])>, f64) = (None, 0.0);
     for (k, step) in path.windows(2).enumerate() {
         let [from, to] = [step[0], step[1]].map(|p| p.map(Real::as_f64));
         let goal = attractor.goal().map(Real::as_f64);
-        let speed = (to - from).norm() / dt;
+        let speed = (to - from).norm() / seconds;
         prop_assert!(
-            speed <= top * (1.0 + 1e-6) + off / dt,
+            speed <= top * (1.0 + 1e-6) + off / seconds,
             "step {k}: {speed} m/s over {top}"
         );
         let (d, after) = ((goal - from).norm(), (goal - to).norm());
         // The angle of Kantorovich, and never past the goal.
-        let range = bounds.eigenvalues(T::rounded(d), METRICS - k, T::rounded(dt));
+        let range = bounds.eigenvalues(T::rounded(d), METRICS - k, dt);
         let sine = deviation_sine(range).as_f64();
         let [slow, fast] = [range.smallest, range.largest].map(Real::as_f64);
-        let near = |x: f64| 1e-5 * x + off / dt;
+        let near = |x: f64| 1e-5 * x + off / seconds;
         prop_assert!(
-            after <= (d - (slow - near(slow)) * dt).max(0.0) + off,
+            after <= (d - (slow - near(slow)) * seconds).max(0.0) + off,
             "step {k}: {d} to {after}"
         );
         if let Some((was, [slowest, fastest])) = before {
@@ -80,20 +63,20 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
             prop_assert!(change <= most + near(fast + fastest), "step {k}: {change} over {most}");
         }
         before = Some((speed, [slow, fast]));
-        sideways += 0.5 * dt * (fast - slow + near(fast)) + off;
+        sideways += 0.5 * seconds * (fast - slow + near(fast)) + off;
         let start = path[0].map(Real::as_f64);
         if let Some(ahead) = (goal - start).try_normalize(1e3 * off) {
             let deviation = ahead.perp(&(to - start)).abs();
             prop_assert!(deviation <= sideways, "step {k}: {deviation} over {sideways}");
         }
-        if d > 1e3 * off && speed * dt > 1e3 * off {
+        if d > 1e3 * off && speed * seconds > 1e3 * off {
             let (ahead, moved) = ((goal - from).normalize(), (to - from).normalize());
             prop_assert!(ahead.perp(&moved).abs() <= sine + 1e-2 && ahead.dot(&moved) > 0.0);
             prop_assert!((to - from).dot(&ahead) <= d * (1.0 + 1e-5) + off);
         }
     }
     let left = attractor.distance(&path[METRICS]).as_f64();
-    prop_assert!(left <= off + 1e-5 * top * dt, "{left} m left");
+    prop_assert!(left <= off + 1e-5 * top * seconds, "{left} m left");
     prop_assert_eq!(certificate.verify(), Ok(()));
     Ok(())
 }

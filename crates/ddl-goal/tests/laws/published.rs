@@ -6,7 +6,7 @@ use ddl_data::{Convention, Dataset, Recording, Window, WindowRule, locate};
 use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use serde::Deserialize;
 
-use crate::tracks::estimator;
+use crate::tracks::{distance, estimator};
 
 #[derive(Deserialize)]
 struct PublishedGoals {
@@ -28,8 +28,16 @@ type StarWindows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
 
 /// Distance from the true endpoint to the nearest goal (m).
 fn goal_error(goals: &GoalSet, track: &[[f64; 2]]) -> f64 {
-    let goal = goals.goals()[goals.nearest(track[19])];
-    (goal[0] - track[19][0]).hypot(goal[1] - track[19][1])
+    distance(goals.goals()[goals.nearest(track[19])], track[19])
+}
+
+fn mean_error(estimator: &GoalEstimator, queries: &[&[[f64; 2]]], tracks: &[Vec<[f64; 2]>]) -> f64 {
+    let estimated = estimator.estimate_batch(queries).unwrap();
+    let errors = estimated
+        .iter()
+        .zip(tracks)
+        .map(|(goals, track)| goal_error(goals, track));
+    errors.sum::<f64>() / tracks.len() as f64
 }
 
 /// The recordings, or `None` (with the reason printed) where they may be absent.
@@ -127,12 +135,7 @@ fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
     let windows: Vec<_> = windows.collect();
     assert_eq!(windows.len(), 2_511);
     let queries: Vec<&[[f64; 2]]> = windows.iter().map(Vec::as_slice).collect();
-    let estimated = estimator.estimate_batch(&queries).unwrap();
-    let errors = estimated
-        .iter()
-        .zip(&queries)
-        .map(|(goals, track)| goal_error(goals, track));
-    let mean = errors.sum::<f64>() / queries.len() as f64;
+    let mean = mean_error(&estimator, &queries, &windows);
     assert!((mean - 0.548).abs() < 0.01, "{mean} m");
     println!("mean goal error of {} pedestrians: {mean:.4} m", queries.len());
 }
@@ -147,21 +150,13 @@ fn the_heading_frame_transfers_between_streets() {
     let library: Vec<_> = tracks("students003").collect();
     let pedestrians: Vec<_> = tracks("zara03").step_by(5).collect();
     let queries: Vec<&[[f64; 2]]> = pedestrians.iter().map(|track| &track[..8]).collect();
-    let mean_error = |params: GoalEstimatorParams| {
-        let estimator = estimator(params, library.clone());
-        let estimated = estimator.estimate_batch(&queries).unwrap();
-        let errors = estimated
-            .iter()
-            .zip(&pedestrians)
-            .map(|(goals, track)| goal_error(goals, track));
-        errors.sum::<f64>() / pedestrians.len() as f64
-    };
+    let error = |params: GoalEstimatorParams| mean_error(&estimator(params, library.clone()), &queries, &pedestrians);
     let query = QuerySpan::Observed;
-    let world = mean_error(GoalEstimatorParams {
+    let world = error(GoalEstimatorParams {
         query,
         ..GoalEstimatorParams::published()
     });
-    let heading = mean_error(GoalEstimatorParams::default());
+    let heading = error(GoalEstimatorParams::default());
     println!(
         "{} pedestrians: {heading:.4} m, {world:.4} m in the frame of the world",
         pedestrians.len()

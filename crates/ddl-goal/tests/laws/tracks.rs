@@ -1,5 +1,6 @@
 //! Synthetic tracks for the tests.
 
+pub(crate) use ddl_core::distance;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 
 pub(crate) type Positions = Vec<[f64; 2]>;
@@ -15,10 +16,6 @@ pub(crate) fn walk(speed: f64, heading: f64, turn: f64) -> Positions {
             here
         })
         .collect()
-}
-
-pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 pub(crate) fn estimator(params: GoalEstimatorParams, tracks: Vec<Positions>) -> GoalEstimator {

@@ -96,12 +96,8 @@ impl AddNorm {
     ) {
         let (width, vectors) = (self.width, four.vectors());
         // For whole groups these slices have a constant length, and their rows need no check of bounds.
-        let numbers_of_rows = first * width..first * width + count * width;
-        let (x, t, y) = (
-            &x[numbers_of_rows.clone()],
-            &t[numbers_of_rows.clone()],
-            &mut y[numbers_of_rows.clone()],
-        );
+        let here = first * width..first * width + count * width;
+        let (x, t, y) = (&x[here.clone()], &t[here.clone()], &mut y[here.clone()]);
         for r in 0..count {
             let row = r * width..(r + 1) * width;
             let (x, t) = (&x[row.clone()], &t[row]);
@@ -129,15 +125,11 @@ impl AddNorm {
         }
         if !normal.scales.is_empty() {
             normal.scales[first..first + count].copy_from_slice(&scales[..count]);
-            let numbers = &mut normal.numbers[numbers_of_rows];
+            let numbers = &mut normal.numbers[here];
             for r in 0..count {
+                let numbers = &mut numbers[r * width..(r + 1) * width];
                 for v in 0..vectors {
-                    store(
-                        simd,
-                        four.get(simd, r, v),
-                        &mut numbers[r * width..(r + 1) * width],
-                        v * LANES,
-                    );
+                    store(simd, four.get(simd, r, v), numbers, v * LANES);
                 }
             }
         }

@@ -51,17 +51,13 @@ impl EncoderKernel {
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let AttentionResults {
-            query,
-            newest,
-            attended,
-        } = &forward_results.attention;
+        let kept = &forward_results.attention;
         let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
-        let inputs = [&query[..], &newest.key, &newest.value];
+        let inputs = [&kept.query[..], &kept.newest.key, &kept.newest.value];
         let mut of_inputs = [0; 3].map(|_| Buffer::any(x.len()));
         let gradients = of_inputs.each_mut().map(|gradient| &mut gradient[..]);
         self.attention
-            .spatial_backward(inputs, frames, dropouts.weights, attended, &of_mixed, gradients);
+            .spatial_backward(inputs, frames, dropouts.weights, &kept.attended, &of_mixed, gradients);
         let of_inputs = of_inputs.each_ref().map(|gradient| &gradient[..]);
         self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx
@@ -135,6 +131,6 @@ impl EncoderKernel {
     }
 }
 
-fn views<'a>(cache: &[&'a CachedKeyValues]) -> Vec<KeyValue<'a>> {
+fn views<'a>(cache: &[&'a CachedKeyValues]) -> Vec<KeyValue<&'a [f32]>> {
     cache.iter().map(|token| token.view()).collect()
 }

@@ -1,8 +1,6 @@
 //! The layout of heads in lanes: eight heads of each of two pedestrians, and the four numbers of each head.
 
 use crate::kernel::quads::{HALF, HalfQuad, Quads as _};
-#[cfg(test)]
-use ddl_simd::InstructionSet;
 use ddl_simd::{DEPTH, Dispatch, Simd, Vectors};
 
 /// Numbers of a head.
@@ -30,12 +28,6 @@ impl AttentionKernel {
             heads: Heads::new(heads),
             dispatch: Dispatch::detect(),
         }
-    }
-
-    #[cfg(test)]
-    pub(super) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
-        let dispatch = Dispatch::new(set)?;
-        Some(Self { dispatch, ..self })
     }
 }
 

@@ -10,7 +10,7 @@ use crate::kernel::heads::AttentionKernel;
 use crate::kernel::threads::run_each;
 use backward::TemporalBackward;
 use forward::TemporalForward;
-pub(crate) use sixteen_heads::{KeyValue, KeyValueMut};
+pub(crate) use sixteen_heads::KeyValue;
 
 /// Rows in a job. They fill whole vectors with any number of heads.
 const ROWS_AT_ONCE: usize = 64;
@@ -30,8 +30,8 @@ impl AttentionKernel {
     pub(crate) fn temporal_forward(
         &self,
         query: &[f32],
-        cache: &[KeyValue<'_>],
-        newest: KeyValue<'_>,
+        cache: &[KeyValue<&[f32]>],
+        newest: KeyValue<&[f32]>,
         mixed: &mut [f32],
     ) {
         self.check_tokens(query, newest, mixed);
@@ -60,11 +60,11 @@ impl AttentionKernel {
     pub(crate) fn temporal_backward(
         &self,
         query: &[f32],
-        cache: &[KeyValue<'_>],
-        newest: KeyValue<'_>,
+        cache: &[KeyValue<&[f32]>],
+        newest: KeyValue<&[f32]>,
         mixed_gradient: &[f32],
         mut query_gradient: &mut [f32],
-        mut token_gradients: Vec<KeyValueMut<'_>>,
+        mut token_gradients: Vec<KeyValue<&mut [f32]>>,
     ) {
         self.check_tokens(query, newest, mixed_gradient);
         assert_eq!(query_gradient.len(), query.len(), "gradient of queries");
@@ -91,7 +91,7 @@ impl AttentionKernel {
         run_each(self.dispatch, jobs.into_iter(), work(query, cache));
     }
 
-    fn check_tokens(&self, query: &[f32], newest: KeyValue<'_>, mixed: &[f32]) {
+    fn check_tokens(&self, query: &[f32], newest: KeyValue<&[f32]>, mixed: &[f32]) {
         assert_eq!(query.len() % self.heads.row(), 0, "rows of queries");
         for (what, other) in [("key", newest.key), ("value", newest.value), ("mixed", mixed)] {
             assert_eq!(other.len(), query.len(), "{what}");
@@ -99,6 +99,6 @@ impl AttentionKernel {
     }
 }
 
-fn work(query: &[f32], cache: &[KeyValue<'_>]) -> usize {
+fn work(query: &[f32], cache: &[KeyValue<&[f32]>]) -> usize {
     query.len() * (cache.len() + 1) * WORK_OF_A_NUMBER
 }

@@ -13,7 +13,8 @@ pub const WAYPOINTS: [f64; 3] = [0.25, 0.5, 0.75];
 /// One affine map y = x W + b for each member, with W `[members, inputs, outputs]` and b `[members, 1, outputs]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MemberAffine {
-    tensor: usize,
+    /// Index of its weight among the tensors of the layout; its bias is the next tensor.
+    pub tensor: usize,
     first: usize,
     members: usize,
     pub(super) inputs: usize,
@@ -34,11 +35,6 @@ impl MemberAffine {
             inputs,
             outputs,
         }
-    }
-
-    /// Index of its weight among the tensors of the layout; its bias is the next tensor.
-    pub fn tensor(self) -> usize {
-        self.tensor
     }
 
     /// The ranges of a member's weight `[inputs, outputs]` and bias among all weights.

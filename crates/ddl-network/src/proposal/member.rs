@@ -1,11 +1,11 @@
 //! One member of the ensemble on the CPU.
 
+use crate::ProposalConfig;
 use crate::kernel::{Buffer, LinearKernel, gelu};
 use crate::proposal::layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers};
 use crate::proposal::remembered::RememberedRows;
 use crate::proposal::seen::{OthersRows, SeenRows};
 use crate::weights::Weights;
-use crate::{MemoryConfig, ProposalConfig};
 
 /// The output of a readout for B pedestrians: endpoints `[B, K * 2]` and logits `[B, K]`.
 pub(super) struct Readings {
@@ -52,18 +52,12 @@ impl MemberKernels {
             ends: of_member(layers.ends),
             logits: of_member(layers.logits),
         };
-        let memory = |(over, from): &(AttentionLayers, ReadoutLayers), config: &MemoryConfig| {
-            (attention(over, config.heads), readout(from))
-        };
+        let memory = layers.memory.as_ref().zip(config.memory.as_ref());
         Self {
             own: of_member(layers.own),
             neighbours: attention(&layers.neighbours, config.heads),
             readout: readout(&layers.readout),
-            memory: layers
-                .memory
-                .as_ref()
-                .zip(config.memory.as_ref())
-                .map(|(layers, config)| memory(layers, config)),
+            memory: memory.map(|((over, from), config)| (attention(over, config.heads), readout(from))),
         }
     }
 

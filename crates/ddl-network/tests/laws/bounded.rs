@@ -3,9 +3,7 @@
 use super::scenes::{Question, WINDOWS, configs, distance, goals};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout};
-use ddl_network::{
-    ForecastWindows as _, MotionNetwork, NetworkFrame, Noise, StarConfig, StepRule, Variant, motion_bounds,
-};
+use ddl_network::{ForecastWindows as _, MotionNetwork, NetworkFrame, Noise, StarConfig, StepRule, motion_bounds};
 use nalgebra::Vector2;
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -128,15 +126,5 @@ fn factors_reproduce_the_steps() {
             let pedestrians: usize = windows.iter().map(|window| window.len()).sum();
             assert!(compared > pedestrians * 3 * HORIZON / 2);
         }
-    }
-}
-
-#[test]
-fn only_variants_with_dynamics_have_factors() {
-    for config in configs() {
-        let network = MotionNetwork::new(config, 5).unwrap();
-        let rollout = &Question::bounded(1).ask(&network, &[&WINDOWS[0]])[0];
-        let variant: Variant = network.config().variant;
-        assert_eq!(rollout.factors.is_some(), variant.dynamics(), "{variant}");
     }
 }

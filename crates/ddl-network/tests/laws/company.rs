@@ -2,7 +2,7 @@
 
 use super::scenes::{Question, WINDOWS, distance, recommended};
 use ddl_data::{HORIZON, Window};
-use ddl_network::{BackboneKind, MotionNetwork, Variant, WindowRollout};
+use ddl_network::{BackboneKind, MotionNetwork, Variant};
 
 /// Largest distance (m) between the forecasts of a pedestrian with others and alone: of the first pedestrian of each
 /// window, and of all pedestrians.
@@ -16,11 +16,10 @@ fn furthest(backbone: BackboneKind) -> [f64; 2] {
             .map(|i| window.filter_pedestrians(|other| other == i).unwrap())
             .collect();
         let alone: Vec<&Window> = alone.iter().collect();
-        let of_pedestrian =
-            |rollout: &WindowRollout, i: usize| rollout.positions[2 * HORIZON * i..][..2 * HORIZON].to_vec();
-        for (i, alone) in question.ask(&network, &alone).iter().enumerate() {
-            let pairs = of_pedestrian(alone, 0).into_iter().zip(of_pedestrian(together, i));
-            let apart = pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max);
+        let alone = question.ask(&network, &alone).into_iter();
+        for (i, (alone, together)) in alone.zip(together.positions.chunks(2 * HORIZON)).enumerate() {
+            let pairs = alone.positions.into_iter().zip(together);
+            let apart = pairs.map(|(a, &b)| distance(a, b)).fold(0.0, f64::max);
             any = any.max(apart);
             if i == 0 {
                 first = first.max(apart);

@@ -36,6 +36,7 @@ proptest! {
         chosen in prop::collection::vec(any::<Index>(), 1..10),
         threads in 1..4_usize,
     ) {
+        let dynamics = config.variant.dynamics();
         let network = MotionNetwork::new(config, 5).unwrap();
         let windows: Vec<&Window> = chosen.iter().map(|index| index.get(&WINDOWS)).collect();
         let together = with_threads(threads, || question.ask(&network, &windows));
@@ -44,6 +45,7 @@ proptest! {
             let alone = with_threads(1, || question.ask(&network, &[window]));
             prop_assert!(together.positions.as_flattened().iter().all(|x| x.is_finite()));
             prop_assert_eq!(bits(&alone[0]), bits(together));
+            prop_assert_eq!(together.factors.is_some(), dynamics);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The learned tensors, by name and in order.
 
 use crate::StarError;
+use crate::model::shared_weights::SharedWeights;
 #[cfg(test)]
 use ddl_network::weights::TensorLayout;
 use ddl_network::weights::{Layout, Weights};
@@ -30,7 +31,8 @@ impl Parameters {
             .tensors()
             .iter()
             .map(|tensor| {
-                let (span, shape) = (tensor.span(), sizes(tensor.shape()));
+                let span = tensor.span();
+                let shape: Vec<i64> = tensor.shape().iter().map(|&size| size as i64).collect();
                 let view = flat.narrow(0, span.start as i64, span.len() as i64);
                 let view = view.view(shape.as_slice());
                 let mut learned = view.copy().set_requires_grad(true);
@@ -89,12 +91,7 @@ impl Parameters {
 
     /// The gradient of a loss computed by libtorch's operations only, as one vector like `flat`.
     pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
-        let (gradients, _) = self.gradients_of(loss, &[])?;
-        let rows = gradients.into_iter().zip(&self.tensors).map(|(gradient, tensor)| {
-            let gradient = gradient.map_or_else(|| tensor.f_zeros_like(), Ok)?;
-            gradient.f_reshape([-1])
-        });
-        Tensor::f_cat(&rows.collect::<Result<Vec<_>, _>>()?, 0)
+        SharedWeights::default().gradient(loss, self)
     }
 
     /// The gradients of a loss with respect to the learned tensors, and to tensors of its computation; `None` for those
@@ -109,8 +106,4 @@ impl Parameters {
         let others = learned.split_off(self.tensors.len());
         Ok((learned, others))
     }
-}
-
-pub(crate) fn sizes(shape: &[usize]) -> Vec<i64> {
-    shape.iter().map(|&size| size as i64).collect()
 }

@@ -69,7 +69,7 @@ impl TorchProposals {
     /// y = x W + b of every member.
     /// Shapes: `x` `[M, B, inputs]` -> `[M, B, outputs]`.
     fn affine(&self, layer: MemberAffine, x: &Tensor) -> Tensor {
-        let tensors = &self.parameters.tensors[layer.tensor()..];
+        let tensors = &self.parameters.tensors[layer.tensor..];
         tensors[1].baddbmm(x, &tensors[0], 1.0, 1.0)
     }
 

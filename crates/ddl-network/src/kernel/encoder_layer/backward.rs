@@ -151,27 +151,17 @@ struct NormBackward<'a> {
 impl TiledKernel for NormBackward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
-        let Self {
-            norm,
-            map,
-            width,
-            normal,
-            gy,
-            decisions,
-            of_x,
-            of_t,
-            sums,
-        } = self;
-        let (of_norm, of_map) = sums.split_at_mut(2 * width);
+        let (norm, normal, width, gy, decisions) = (self.norm, self.normal, self.width, self.gy, self.decisions);
+        let (of_norm, of_map) = self.sums.split_at_mut(2 * width);
         let of_norm: [&mut [f32]; 2] = of_norm.split_at_mut(width).into();
-        let Some((map, t)) = map else {
-            norm.backward(simd, normal, gy, decisions, [of_x, of_t], of_norm);
+        let Some((map, t)) = self.map else {
+            norm.backward(simd, normal, gy, decisions, [self.of_x, self.of_t], of_norm);
             return;
         };
-        let mut of_mapped = Buffer::any(of_t.len());
-        norm.backward(simd, normal, gy, decisions, [of_x, &mut of_mapped], of_norm);
+        let mut of_mapped = Buffer::any(self.of_t.len());
+        norm.backward(simd, normal, gy, decisions, [self.of_x, &mut of_mapped], of_norm);
         let of_mapped = MatrixColumns::whole(&of_mapped, width);
-        let mut of_t = MatrixColumnsMut::whole(of_t, width);
+        let mut of_t = MatrixColumnsMut::whole(self.of_t, width);
         map.backward::<S, R, V>(simd, of_mapped, &mut of_t, false);
         let of_map = of_map.split_at_mut(width * width).into();
         map.add_gradients::<S, R, V>(simd, MatrixColumns::whole(t, width), of_mapped, of_map);

@@ -2,7 +2,7 @@
 
 use crate::kernel::buffer::Buffer;
 use crate::kernel::spatial_attention::Attended;
-use crate::kernel::temporal_attention::{KeyValue, KeyValueMut};
+use crate::kernel::temporal_attention::KeyValue;
 
 pub(crate) struct ForwardResults {
     pub(super) attention: AttentionResults,
@@ -25,11 +25,7 @@ pub(super) struct NormalisedRows {
 }
 
 /// Keys and values of tokens, or their gradients: `[rows, width]` each.
-#[derive(Debug)]
-pub(crate) struct CachedKeyValues {
-    pub(crate) key: Buffer,
-    pub(crate) value: Buffer,
-}
+pub(crate) type CachedKeyValues = KeyValue<Buffer>;
 
 impl CachedKeyValues {
     pub(crate) fn zeros(count: usize) -> Self {
@@ -39,17 +35,13 @@ impl CachedKeyValues {
         }
     }
 
-    pub(super) fn view(&self) -> KeyValue<'_> {
-        KeyValue {
-            key: &self.key,
-            value: &self.value,
-        }
+    pub(super) fn view(&self) -> KeyValue<&[f32]> {
+        let Self { key, value } = self;
+        KeyValue { key, value }
     }
 
-    pub(super) fn view_mut(&mut self) -> KeyValueMut<'_> {
-        KeyValueMut {
-            key: &mut self.key,
-            value: &mut self.value,
-        }
+    pub(super) fn view_mut(&mut self) -> KeyValue<&mut [f32]> {
+        let Self { key, value } = self;
+        KeyValue { key, value }
     }
 }

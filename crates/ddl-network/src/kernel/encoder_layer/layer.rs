@@ -6,8 +6,6 @@ use crate::kernel::dropout::Dropout;
 use crate::kernel::feed_forward::FeedForward;
 use crate::kernel::heads::{AttentionKernel, HEAD_WIDTH};
 use ddl_simd::Dispatch;
-#[cfg(test)]
-use ddl_simd::InstructionSet;
 
 /// z = norm(x + d(W mixed + b)), y = norm(z + d(f(z))). `mixed` is the output of attention, whose queries, keys and
 /// values are affine in x; f is the feed-forward block; d is dropout.
@@ -48,16 +46,6 @@ impl EncoderKernel {
             attention: AttentionKernel::new(heads),
             dispatch: Dispatch::detect(),
         }
-    }
-
-    #[cfg(test)]
-    pub(in crate::kernel) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
-        Some(Self {
-            feed_forward: self.feed_forward.with_instructions(set)?,
-            attention: self.attention.with_instructions(set)?,
-            dispatch: Dispatch::new(set)?,
-            ..self
-        })
     }
 
     /// Replaces the weights, in the order of [`Sizes`].

@@ -53,7 +53,9 @@ impl LayerCase {
     }
 
     fn layer(&self, set: InstructionSet) -> EncoderKernel {
-        let mut layer = EncoderKernel::zeros(self.sizes).with_instructions(set).unwrap();
+        let mut layer = EncoderKernel::zeros(self.sizes);
+        layer.dispatch = Dispatch::new(set).unwrap();
+        (layer.feed_forward.dispatch, layer.attention.dispatch) = (layer.dispatch, layer.dispatch);
         layer.update(&self.weights);
         layer
     }

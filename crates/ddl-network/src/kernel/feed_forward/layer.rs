@@ -4,8 +4,6 @@ use crate::kernel::affine::Affine;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::feed_forward::dropout::UnitDecisions;
 use crate::kernel::product::{BLOCK, End, Start, multiply};
-#[cfg(test)]
-use ddl_simd::InstructionSet;
 use ddl_simd::{Dispatch, Simd};
 
 /// Number of rows whose hidden activations of one block of units are computed together. They stay in the first-level
@@ -20,7 +18,7 @@ pub(super) const ROWS_AT_ONCE: usize = 64;
 pub(crate) struct FeedForward {
     pub(super) before: Affine,
     pub(super) after: Affine,
-    pub(super) dispatch: Dispatch,
+    pub(in crate::kernel) dispatch: Dispatch,
 }
 
 impl FeedForward {
@@ -37,13 +35,6 @@ impl FeedForward {
     pub(crate) fn update(&mut self, [w1, b1, w2, b2]: [&[f32]; 4]) {
         self.before.update(w1, b1);
         self.after.update(w2, b2);
-    }
-
-    /// The same with this instruction set; `None` if the processor does not support it.
-    #[cfg(test)]
-    pub(in crate::kernel) fn with_instructions(mut self, set: InstructionSet) -> Option<Self> {
-        self.dispatch = Dispatch::new(set)?;
-        Some(self)
     }
 
     pub(super) fn width(&self) -> usize {

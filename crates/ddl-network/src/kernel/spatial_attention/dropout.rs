@@ -1,6 +1,6 @@
 //! Dropout of attention weights: a function of only (seed, batch entry, query, key, head), with 24 random bits.
 
-use crate::kernel::dropout::{Dropout, Threshold, mixed};
+use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use crate::kernel::heads::{head_of, row_of};
 use ddl_simd::{LANES, Lanes};
 
@@ -32,23 +32,15 @@ impl WeightDecisions {
         self.decide(hash(query, key as u32, head as u32))
     }
 
-    pub(super) fn query(&self, entry: usize, query: usize) -> QueryBits {
-        let place = ((entry as u64) << 32) ^ query as u64;
-        let bits = mixed(self.seed.wrapping_add(place));
-        QueryBits {
-            low: bits as u32,
-            high: (bits >> 32) as u32,
-        }
+    pub(super) fn query(&self, entry: usize, query: usize) -> RowKey {
+        RowKey::new(self.seed, ((entry as u64) << 32) ^ query as u64)
     }
 
     #[inline(always)]
     pub(super) fn factors(&self, bits: &LaneBits, key: usize) -> Lanes {
         let mut result = Lanes::ZERO;
         for (lane, factor) in result.0.iter_mut().enumerate() {
-            let query = QueryBits {
-                low: bits.low[lane],
-                high: bits.high[lane],
-            };
+            let query = RowKey([bits.low[lane], bits.high[lane]]);
             *factor = self.decide(hash(query, key as u32, bits.head[lane]));
         }
         result
@@ -66,12 +58,6 @@ impl WeightDecisions {
 }
 
 #[derive(Clone, Copy, Debug)]
-pub(super) struct QueryBits {
-    low: u32,
-    high: u32,
-}
-
-#[derive(Clone, Copy, Debug)]
 pub(super) struct LaneBits {
     low: [u32; LANES],
     high: [u32; LANES],
@@ -79,11 +65,11 @@ pub(super) struct LaneBits {
 }
 
 impl LaneBits {
-    pub(super) fn new(queries: [QueryBits; 2], first_head: usize) -> Self {
+    pub(super) fn new(queries: [RowKey; 2], first_head: usize) -> Self {
         let query = |lane: usize| queries[row_of(lane)];
         Self {
-            low: std::array::from_fn(|lane| query(lane).low),
-            high: std::array::from_fn(|lane| query(lane).high),
+            low: std::array::from_fn(|lane| query(lane).0[0]),
+            high: std::array::from_fn(|lane| query(lane).0[1]),
             head: std::array::from_fn(|lane| (first_head + head_of(lane)) as u32),
         }
     }
@@ -92,10 +78,10 @@ impl LaneBits {
 /// The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), with one word of the query mixed in before it
 /// and another in its middle.
 #[inline(always)]
-fn hash(query: QueryBits, key: u32, head: u32) -> u32 {
-    let value = (key << 8).wrapping_add(head) ^ query.low;
+fn hash(RowKey([low, high]): RowKey, key: u32, head: u32) -> u32 {
+    let value = (key << 8).wrapping_add(head) ^ low;
     let value = (value ^ (value >> 16)).wrapping_mul(0x7feb_352d);
-    let value = (value ^ (value >> 15)).wrapping_add(query.high);
+    let value = (value ^ (value >> 15)).wrapping_add(high);
     let value = value.wrapping_mul(0x846c_a68b);
     value ^ (value >> 16)
 }

@@ -4,8 +4,8 @@ use crate::kernel::heads::AttentionKernel;
 use crate::kernel::heads::HEAD_WIDTH;
 use crate::kernel::spatial_attention::dropout::WeightDecisions;
 use crate::kernel::spatial_attention::queries::TWOS_AT_ONCE;
-use crate::kernel::tests::attention::Attention;
-use crate::kernel::tests::numbers::{Numbers, assert_close, lists, wide};
+use crate::kernel::tests::attention::attention;
+use crate::kernel::tests::numbers::{Numbers, assert_close, lists};
 use crate::kernel::{Dropout, Scenes};
 use ddl_simd::{Dispatch, InstructionSet};
 use proptest::prelude::*;
@@ -38,8 +38,8 @@ impl SceneCase {
     }
 
     fn run(&self, set: InstructionSet) -> (Vec<f32>, Vec<f32>) {
-        let attention = AttentionKernel::new(self.heads);
-        let attention = attention.with_instructions(set).unwrap();
+        let mut attention = AttentionKernel::new(self.heads);
+        attention.dispatch = Dispatch::new(set).unwrap();
         let scenes = Scenes::new(&self.sizes, lists(&self.sizes, &self.visible));
         let frames = scenes.throughout();
         let attended = attention.spatial_forward(self.inputs(), frames, self.dropout, true);
@@ -60,60 +60,26 @@ impl SceneCase {
     }
 
     fn expected(&self) -> (Vec<f64>, Vec<f64>) {
-        let (heads, width) = (self.heads, HEAD_WIDTH);
         let pedestrians: usize = self.sizes.iter().sum();
-        let (inputs, gradient) = (wide(&self.inputs.concat()), wide(&self.gradient));
-        let index = |entry: usize, pedestrian: usize, part: usize, head: usize| {
-            part * gradient.len() + ((entry * pedestrians + pedestrian) * heads + head) * width
-        };
-        let pairs: usize = self.sizes.iter().map(|size| size * size).sum();
-        let frames = self.visible.len() / pairs;
-        let decisions = self.dropout.and_then(WeightDecisions::new);
-        let mut mixed = vec![0.0; gradient.len()];
-        let mut gradients_of_inputs = vec![0.0; inputs.len()];
-        for entry in 0..self.entries {
-            let mut visible = &self.visible[(entry % frames) * pairs..];
-            let mut first = 0;
-            for &size in &self.sizes {
-                for i in first..first + size {
-                    let (row, rest) = visible.split_at(size);
-                    visible = rest;
-                    let seen = (0..size).filter(|&j| row[j]).map(|j| first + j);
-                    let seen: Vec<usize> = seen.collect();
-                    for head in 0..heads {
-                        let vector = |pedestrian, part| &inputs[index(entry, pedestrian, part, head)..][..width];
-                        let keys: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 1)).collect();
-                        let values: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 2)).collect();
-                        let factor = |&j: &usize| match decisions {
-                            Some(decisions) => f64::from(decisions.factor(entry, i, j, head)),
-                            None => 1.0,
-                        };
-                        let query = Attention {
-                            query: vector(i, 0),
-                            keys: &keys,
-                            values: &values,
-                            factors: &seen.iter().map(factor).collect::<Vec<_>>(),
-                        };
-                        let start = index(entry, i, 0, head);
-                        mixed[start..start + width].copy_from_slice(&query.mixed());
-                        let gradients = query.gradients(&gradient[start..start + width]);
-                        let mut add = |pedestrian, part, numbers: &[f64]| {
-                            let place = index(entry, pedestrian, part, head);
-                            for (sum, number) in gradients_of_inputs[place..].iter_mut().zip(numbers) {
-                                *sum += number;
-                            }
-                        };
-                        add(i, 0, &gradients.query);
-                        for (n, &j) in seen.iter().enumerate() {
-                            add(j, 1, &gradients.keys[n]);
-                            add(j, 2, &gradients.values[n]);
-                        }
-                    }
-                }
-                first += size;
-            }
+        let lists = lists(&self.sizes, &self.visible);
+        let mut firsts = Vec::new();
+        for &size in &self.sizes {
+            firsts.extend(std::iter::repeat_n(firsts.len(), size));
         }
-        (mixed, gradients_of_inputs)
+        let seen = |row: usize| {
+            let first = row / pedestrians * pedestrians + firsts[row % pedestrians];
+            lists[row % lists.len()].iter().map(|&j| first + j as usize).collect()
+        };
+        let seen: Vec<Vec<usize>> = (0..self.entries * pedestrians).map(seen).collect();
+        let decisions = self.dropout.and_then(WeightDecisions::new);
+        let factor = |row: usize, key: usize, head| {
+            let factor = |decisions: WeightDecisions| {
+                decisions.factor(row / pedestrians, row % pedestrians, key % pedestrians, head)
+            };
+            decisions.map_or(1.0, |decisions| f64::from(factor(decisions)))
+        };
+        let (mixed, gradients) = attention(self.inputs(), &self.gradient, self.heads, &seen, factor);
+        (mixed, gradients.concat())
     }
 
     fn check(&self, tolerance: f64) {

@@ -6,7 +6,7 @@
 use crate::kernel::heads::SCALE;
 use crate::kernel::quads::Quads as _;
 use crate::kernel::temporal_attention::sixteen_heads::{
-    GROUP_NUMBERS, KeyValue, KeyValueMut, SixteenHeads, accumulate, dot, soften, weighted,
+    GROUP_NUMBERS, KeyValue, SixteenHeads, accumulate, dot, soften, weighted,
 };
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd};
 use fearless_simd::prelude::*;
@@ -15,13 +15,13 @@ pub(super) struct TemporalBackward<'a> {
     /// Index of the first number of these rows in the whole.
     pub(super) first: usize,
     pub(super) query: &'a [f32],
-    pub(super) cache: &'a [KeyValue<'a>],
-    pub(super) newest: KeyValue<'a>,
+    pub(super) cache: &'a [KeyValue<&'a [f32]>],
+    pub(super) newest: KeyValue<&'a [f32]>,
     pub(super) mixed_gradient: &'a [f32],
     /// The gradients of these rows only.
     pub(super) query_gradient: &'a mut [f32],
     /// The gradients of these rows only: the cached tokens, then the newest token.
-    pub(super) token_gradients: Vec<KeyValueMut<'a>>,
+    pub(super) token_gradients: Vec<KeyValue<&'a mut [f32]>>,
 }
 
 impl Kernel for TemporalBackward<'_> {

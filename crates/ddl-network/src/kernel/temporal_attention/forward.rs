@@ -11,8 +11,8 @@ pub(super) struct TemporalForward<'a> {
     /// Index of the first number of these rows in the whole.
     pub(super) first: usize,
     pub(super) query: &'a [f32],
-    pub(super) cache: &'a [KeyValue<'a>],
-    pub(super) newest: KeyValue<'a>,
+    pub(super) cache: &'a [KeyValue<&'a [f32]>],
+    pub(super) newest: KeyValue<&'a [f32]>,
     /// The mixed values of these rows only.
     pub(super) mixed: &'a mut [f32],
 }

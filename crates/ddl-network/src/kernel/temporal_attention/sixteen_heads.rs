@@ -8,22 +8,16 @@ use crate::kernel::heads::HEAD_WIDTH;
 use ddl_simd::{DEPTH, Floats, LANES, Lanes, Simd, Vectors};
 use fearless_simd::prelude::*;
 
-/// Keys and values of one token for each row, `[rows, heads, head width]` each.
+/// Keys and values of one token for each row, or their gradients: `[rows, heads, head width]` each.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct KeyValue<'a> {
-    pub(crate) key: &'a [f32],
-    pub(crate) value: &'a [f32],
+pub(crate) struct KeyValue<N> {
+    pub(crate) key: N,
+    pub(crate) value: N,
 }
 
-/// Gradients of a [`KeyValue`], of the same shapes.
-pub(crate) struct KeyValueMut<'a> {
-    pub(crate) key: &'a mut [f32],
-    pub(crate) value: &'a mut [f32],
-}
-
-impl<'a> KeyValueMut<'a> {
-    pub(super) fn split_off(&mut self, count: usize) -> KeyValueMut<'a> {
-        KeyValueMut {
+impl KeyValue<&mut [f32]> {
+    pub(super) fn split_off(&mut self, count: usize) -> Self {
+        Self {
             key: self.key.split_off_mut(..count).unwrap_or_default(),
             value: self.value.split_off_mut(..count).unwrap_or_default(),
         }
@@ -38,7 +32,7 @@ const AHEAD: usize = 3;
 const PREFETCHED_FROM: usize = 1 << 17;
 
 /// Whether these tokens are prefetched. The processor's newest prefetcher follows fewer streams than there are tokens.
-pub(super) fn are_prefetched(cache: &[KeyValue<'_>]) -> bool {
+pub(super) fn are_prefetched(cache: &[KeyValue<&[f32]>]) -> bool {
     cache.iter().map(|token| token.key.len()).sum::<usize>() >= PREFETCHED_FROM
 }
 
@@ -189,8 +183,8 @@ pub(super) fn soften<S: Simd>(
     simd: S,
     place: SixteenHeads,
     query: Vectors<S>,
-    cache: &[KeyValue<'_>],
-    newest: KeyValue<'_>,
+    cache: &[KeyValue<&[f32]>],
+    newest: KeyValue<&[f32]>,
     powers: &mut [Lanes],
     prefetched: bool,
 ) -> Floats<S> {

@@ -2,24 +2,18 @@
 
 use crate::kernel::heads::AttentionKernel;
 use crate::kernel::heads::HEAD_WIDTH;
-use crate::kernel::temporal_attention::{KeyValue, KeyValueMut};
-use crate::kernel::tests::attention::Attention;
-use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
+use crate::kernel::temporal_attention::KeyValue;
+use crate::kernel::tests::attention::{Attention, attention};
+use crate::kernel::tests::numbers::{Numbers, assert_close, bits};
 use ddl_simd::{Dispatch, InstructionSet};
 use proptest::prelude::*;
 
-/// Tokens are keys and values, the oldest first and the newest token last.
 struct TemporalCase {
     heads: usize,
     query: Vec<f32>,
-    tokens: Vec<[Vec<f32>; 2]>,
+    /// Keys and values of all tokens, the oldest first and the newest token last.
+    tokens: [Vec<f32>; 2],
     gradient: Vec<f32>,
-}
-
-struct TemporalResults<T> {
-    mixed: Vec<T>,
-    query: Vec<T>,
-    tokens: Vec<[Vec<T>; 2]>,
 }
 
 /// Initial contents of the gradients.
@@ -29,86 +23,60 @@ impl TemporalCase {
     fn new(seed: u64, heads: usize, rows: usize, cached: usize, bound: f32) -> Self {
         let mut numbers = Numbers::seeded(seed);
         let count = rows * heads * HEAD_WIDTH;
-        let mut two = || [numbers.even(count, bound), numbers.even(count, bound)];
         Self {
             heads,
-            tokens: (0..=cached).map(|_| two()).collect(),
+            tokens: [0; 2].map(|_| numbers.even((cached + 1) * count, bound)),
             query: numbers.even(count, bound),
             gradient: numbers.even(count, 1.0),
         }
     }
 
-    fn run(&self, set: InstructionSet) -> TemporalResults<f32> {
-        let attention = AttentionKernel::new(self.heads);
-        let attention = attention.with_instructions(set).unwrap();
-        let tokens = self.tokens.iter().map(|[key, value]| KeyValue { key, value });
-        let mut cache: Vec<KeyValue<'_>> = tokens.collect();
-        let newest = cache.pop().unwrap();
-        let mut mixed = vec![f32::NAN; self.query.len()];
-        attention.temporal_forward(&self.query, &cache, newest, &mut mixed);
-        let before = vec![BEFORE; self.query.len()];
-        let mut query = before.clone();
-        let mut tokens = vec![[before.clone(), before]; self.tokens.len()];
-        let gradients = tokens.iter_mut().map(|[key, value]| KeyValueMut { key, value });
-        let gradients = gradients.collect();
-        attention.temporal_backward(&self.query, &cache, newest, &self.gradient, &mut query, gradients);
-        TemporalResults { mixed, query, tokens }
+    fn cache(&self) -> Vec<KeyValue<&[f32]>> {
+        let [keys, values] = self
+            .tokens
+            .each_ref()
+            .map(|numbers| numbers.chunks_exact(self.query.len()));
+        keys.zip(values).map(|(key, value)| KeyValue { key, value }).collect()
     }
 
-    fn expected(&self) -> TemporalResults<f64> {
-        let width = HEAD_WIDTH;
-        let (query, gradient) = (wide(&self.query), wide(&self.gradient));
-        let tokens: Vec<[Vec<f64>; 2]> = self
-            .tokens
-            .iter()
-            .map(|[key, value]| [wide(key), wide(value)])
-            .collect();
-        let before = vec![f64::from(BEFORE); query.len()];
-        let mut results = TemporalResults {
-            mixed: Vec::new(),
-            query: before.clone(),
-            tokens: vec![[before.clone(), before]; tokens.len()],
-        };
-        for first in (0..query.len()).step_by(width) {
-            let here = first..first + width;
-            let [keys, values] = [0, 1].map(|part| -> Vec<&[f64]> {
-                let tokens = tokens.iter();
-                tokens.map(|token| &token[part][here.clone()]).collect()
-            });
-            let attention = Attention {
-                query: &query[here.clone()],
-                keys: &keys,
-                values: &values,
-                factors: &vec![1.0; tokens.len()],
-            };
-            results.mixed.extend(attention.mixed());
-            let gradients = attention.gradients(&gradient[here.clone()]);
-            let add = |into: &mut [f64], numbers: &[f64]| {
-                for (sum, number) in into.iter_mut().zip(numbers) {
-                    *sum += number;
-                }
-            };
-            add(&mut results.query[here.clone()], &gradients.query);
-            for (token, [key, value]) in results.tokens.iter_mut().enumerate() {
-                add(&mut key[here.clone()], &gradients.keys[token]);
-                add(&mut value[here.clone()], &gradients.values[token]);
-            }
-        }
-        results
+    /// The mixed values, and the gradients of queries, keys and values.
+    fn run(&self, set: InstructionSet) -> (Vec<f32>, [Vec<f32>; 3]) {
+        let mut attention = AttentionKernel::new(self.heads);
+        attention.dispatch = Dispatch::new(set).unwrap();
+        let mut cache = self.cache();
+        let newest = cache.pop().unwrap();
+        let count = self.query.len();
+        let mut mixed = vec![f32::NAN; count];
+        attention.temporal_forward(&self.query, &cache, newest, &mut mixed);
+        let [keys, values] = &self.tokens;
+        let mut gradients = [&self.query, keys, values].map(|input| vec![BEFORE; input.len()]);
+        let [query, keys, values] = &mut gradients;
+        let tokens = keys.chunks_exact_mut(count).zip(values.chunks_exact_mut(count));
+        let tokens = tokens.map(|(key, value)| KeyValue { key, value }).collect();
+        attention.temporal_backward(&self.query, &cache, newest, &self.gradient, query, tokens);
+        (mixed, gradients)
+    }
+
+    fn expected(&self) -> Attention {
+        let ([keys, values], count) = (&self.tokens, self.query.len());
+        let rows = count / (self.heads * HEAD_WIDTH);
+        let seen = |row| (row..keys.len() / count * rows).step_by(rows).collect();
+        let seen: Vec<Vec<usize>> = (0..rows).map(seen).collect();
+        let inputs = [&self.query[..], keys, values];
+        let (mixed, gradients) = attention(inputs, &self.gradient, self.heads, &seen, |_, _, _| 1.0);
+        let added = |numbers: Vec<f64>| numbers.into_iter().map(|number| f64::from(BEFORE) + number).collect();
+        (mixed, gradients.map(added))
     }
 
     fn check(&self, tolerance: f64) {
-        let expected = self.expected();
+        let (mixed, gradients) = self.expected();
+        let count = self.query.len();
         for set in InstructionSet::available() {
-            let results = self.run(set);
-            let close = |what: &str, a: &[f32], b: &[f64]| {
-                assert_close(&format!("{set:?} {what}"), a, b, tolerance);
-            };
-            close("mixed", &results.mixed, &expected.mixed);
-            close("query", &results.query, &expected.query);
-            for (token, other) in results.tokens.iter().zip(&expected.tokens) {
-                close("key", &token[0], &other[0]);
-                close("value", &token[1], &other[1]);
+            let (of_mixed, of_gradients) = self.run(set);
+            assert_close(&format!("{set:?} mixed"), &of_mixed, &mixed, tolerance);
+            for (i, what) in ["query", "key", "value"].into_iter().enumerate() {
+                let tokens = of_gradients[i].chunks(count).zip(gradients[i].chunks(count));
+                tokens.for_each(|(a, b)| assert_close(&format!("{set:?} {what}"), a, b, tolerance));
             }
         }
     }
@@ -124,21 +92,17 @@ fn a_memory_of_fewer_rows_is_repeated() {
     for rows in [1, 5, 25, 64] {
         let mut case = TemporalCase::new(4, 8, rows * 20, 6, 1.5);
         let short = rows * 32;
-        for [key, value] in &mut case.tokens[..3] {
-            for numbers in [key, value] {
-                let first = numbers[..short].to_vec();
-                *numbers = first.repeat(20);
+        for numbers in &mut case.tokens {
+            for token in numbers.chunks_exact_mut(20 * short).take(3) {
+                let first = token[..short].to_vec();
+                token.copy_from_slice(&first.repeat(20));
             }
         }
-        let whole = case.run(Dispatch::detect().instruction_set()).mixed;
-        let tokens = case.tokens.iter().enumerate().map(|(token, [key, value])| {
-            let length = if token < 3 { short } else { key.len() };
-            KeyValue {
-                key: &key[..length],
-                value: &value[..length],
-            }
-        });
-        let mut cache: Vec<KeyValue<'_>> = tokens.collect();
+        let (whole, _) = case.run(Dispatch::detect().instruction_set());
+        let mut cache = case.cache();
+        for KeyValue { key, value } in &mut cache[..3] {
+            (*key, *value) = (&key[..short], &value[..short]);
+        }
         let newest = cache.pop().unwrap();
         let mut mixed = vec![0.0; whole.len()];
         AttentionKernel::new(8).temporal_forward(&case.query, &cache, newest, &mut mixed);

@@ -12,14 +12,8 @@ use tch::Kind;
 const SIGMA: f64 = 1e-8;
 const HORIZON: i64 = 12;
 
-/// Bounds of the steps of one pedestrian.
-#[derive(Debug, Clone, Copy)]
-struct Bounds {
-    top_speed: f64,
-    velocity: [f64; 2],
-    share: f64,
-    absolute: bool,
-}
+/// Bounds of the steps of one pedestrian, and whether they are absolute.
+type Bounds = (MotionBounds<f64>, bool);
 
 /// A plain Euler step of `dt` seconds, or a step within bounds with the given remaining time.
 #[derive(Debug, Clone, Copy)]
@@ -35,13 +29,13 @@ fn tensor_step(p: &Tensor, goal: &Tensor, factor: &Tensor, step: Step) -> Tensor
     };
     match step {
         Step::Euler { dt } => natural_gradient_step(p, goal, factor, constants(dt)),
-        Step::Bounded(bounds, time) => {
+        Step::Bounded((bounds, absolute), time) => {
             let like = |numbers: &[f64]| Tensor::from_slice(numbers).to_kind(p.kind());
             let bounds = StepBounds {
-                top_speed: like(&[bounds.top_speed]),
-                velocity: like(&bounds.velocity),
-                share: like(&[bounds.share]),
-                absolute: bounds.absolute,
+                top_speed: like(&[bounds.top_speed()]),
+                velocity: like(bounds.velocity().as_slice()),
+                share: like(&[bounds.share()]),
+                absolute,
             };
             bounded_step(p, goal, factor, constants(time.dt), &bounds, time)
         }
@@ -64,9 +58,8 @@ fn oracle(p: [f64; 2], goal: [f64; 2], [a, b, c]: [f64; 3], step: Step) -> [f64;
             let flow = NaturalGradientFlow::new(attractor, metric);
             rollout(&flow, &Euler, start, dt, 1)
         }
-        Step::Bounded(drawn, time) => {
-            let bounds = MotionBounds::new(drawn.top_speed, drawn.velocity.into(), drawn.share).unwrap();
-            let bounds = if drawn.absolute { bounds.absolute() } else { bounds };
+        Step::Bounded((bounds, absolute), time) => {
+            let bounds = if absolute { bounds.absolute() } else { bounds };
             let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
             let flow = NaturalGradientFlow::new(attractor, metric);
             rollout(&flow, &StableEuler, start, time.dt, 1)
@@ -80,14 +73,9 @@ fn bounds(dt: f64) -> impl Strategy<Value = (Bounds, StepTime<f64>)> {
     let velocity = prop::array::uniform2(-4.0..4.0);
     let draw = (0.5..8.0, velocity, 0.0..=1.0, any::<bool>(), 0..12_usize);
     draw.prop_map(move |(top_speed, velocity, share, absolute, done)| {
-        let bounds = Bounds {
-            top_speed,
-            velocity,
-            share,
-            absolute,
-        };
+        let bounds = MotionBounds::new(top_speed, velocity.into(), share).unwrap();
         let left = 12 - done;
-        (bounds, StepTime { done, left, dt })
+        ((bounds, absolute), StepTime { done, left, dt })
     })
 }
 
@@ -200,17 +188,9 @@ proptest! {
 #[test]
 fn gradients_reach_back_to_the_first_step() {
     let factors: Vec<f64> = [1.1, 0.2, 0.9].repeat(HORIZON as usize);
-    let [start, shape] = gradients_of_a_chain(
-        &[([0.0, 0.0], [4.8, 0.0])],
-        &factors,
-        Some(Bounds {
-            top_speed: 2.15,
-            velocity: [1.0, 0.0],
-            share: 1.0,
-            absolute: false,
-        }),
-        Kind::Double,
-    );
+    let bounds = MotionBounds::new(2.15, Vector2::new(1.0, 0.0), 1.0).unwrap();
+    let pedestrian = ([0.0, 0.0], [4.8, 0.0]);
+    let [start, shape] = gradients_of_a_chain(&[pedestrian], &factors, Some((bounds, false)), Kind::Double);
     assert!(are_numbers(&start) && are_numbers(&shape), "{start} {shape}");
     assert!(shape.get(0).abs().max().double_value(&[]) > 1e-3, "{shape}");
     // The last step ends at the goal for any output of the network.

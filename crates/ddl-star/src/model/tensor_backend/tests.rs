@@ -55,24 +55,12 @@ fn network(config: &StarConfig, kind: Kind) -> TorchNetwork {
     TorchNetwork::with_precision(config.clone(), 3, cpu, kind).unwrap()
 }
 
-#[derive(Debug, Clone, Copy)]
-enum By {
-    /// Kernels and tape, in single precision.
-    Kernels,
-    /// libtorch only, in double precision.
-    Torch,
-}
-
-/// A loss and its gradient, in double precision.
-fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Engine<'_>) -> Tensor) -> (f64, Tensor) {
-    let kind = match by {
-        By::Kernels => Kind::Float,
-        By::Torch => Kind::Double,
-    };
+/// A loss and its gradient: by kernels and tape in single precision, by libtorch only in double precision.
+fn gradient(config: &StarConfig, kind: Kind, loss: impl FnOnce(&TorchNetwork, Engine<'_>) -> Tensor) -> (f64, Tensor) {
     let network = network(config, kind);
     let parameters = network.parameters();
     let kernels = network.kernels().unwrap();
-    assert_eq!(kernels.is_some(), matches!(by, By::Kernels), "{by:?}");
+    assert_eq!(kernels.is_some(), kind == Kind::Float, "{kind:?}");
     let (loss, gradient) = if let Some(kernels) = kernels {
         let pass = KernelPass::new(&kernels, Mode::Evaluate, 0, network.copy_noise_weight());
         let loss = loss(&network, Engine::Kernels(&pass));
@@ -124,12 +112,11 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
             (&some, walks),
             (&many, walks),
         ] {
-            let computed = |by| gradient(&config, by, |network, pass| loss(windows, network, pass));
-            let (torch_loss, torch_gradient) = computed(By::Torch);
-            let size = torch_gradient.norm().double_value(&[]);
-            assert!(size > 1e-3, "{}: {size}", name(&config));
-            let name = name(&config);
-            let (loss, ours) = computed(By::Kernels);
+            let computed = |kind| gradient(&config, kind, |network, pass| loss(windows, network, pass));
+            let (torch_loss, torch_gradient) = computed(Kind::Double);
+            let (size, name) = (torch_gradient.norm().double_value(&[]), name(&config));
+            assert!(size > 1e-3, "{name}: {size}");
+            let (loss, ours) = computed(Kind::Float);
             let off = (loss / torch_loss - 1.0).abs();
             assert!(off < of_loss, "{name}: {loss} {torch_loss}");
             let off = (ours - &torch_gradient).norm().double_value(&[]);

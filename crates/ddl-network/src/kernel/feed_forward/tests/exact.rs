@@ -17,35 +17,21 @@ pub(super) struct Case {
     pub(super) dropout: Option<Dropout>,
 }
 
-/// Sums, each with the sum of its terms' absolute values, and the possible difference from units whose activity is
+/// A sum with the sum of its terms' absolute values, and the possible difference from units whose activity is
 /// ambiguous.
-pub(super) struct Sums {
-    pub(super) values: Vec<f64>,
-    pub(super) sizes: Vec<f64>,
-    pub(super) doubts: Vec<f64>,
+#[derive(Clone, Default)]
+pub(super) struct Sum {
+    pub(super) value: f64,
+    pub(super) size: f64,
+    pub(super) doubt: f64,
 }
 
-impl Sums {
-    fn zeros(count: usize) -> Self {
-        let zeros = || vec![0.0; count];
-        Self {
-            values: zeros(),
-            sizes: zeros(),
-            doubts: zeros(),
-        }
+impl Sum {
+    fn add(&mut self, term: f64, size: f64, doubt: bool) {
+        self.value += term;
+        self.size += size;
+        self.doubt += if doubt { size } else { 0.0 };
     }
-
-    fn add(&mut self, entry: usize, term: f64, size: f64, doubt: bool) {
-        self.values[entry] += term;
-        self.sizes[entry] += size;
-        self.doubts[entry] += if doubt { size } else { 0.0 };
-    }
-}
-
-pub(super) struct Exact {
-    pub(super) y: Sums,
-    /// Gradients of x, W1, b1, W2, b2.
-    pub(super) gradients: [Sums; 5],
 }
 
 impl Case {
@@ -90,18 +76,19 @@ impl Case {
             .map_or(1.0, |dropout| reference::factor(dropout, row, unit))
     }
 
-    pub(super) fn exact(&self) -> Exact {
+    /// y, and the gradients of x, W1, b1, W2, b2.
+    pub(super) fn exact(&self) -> [Vec<Sum>; 6] {
         let (width, hidden) = (self.width, self.hidden);
-        let mut y = Sums::zeros(self.x.len());
-        let counts = [self.x.len(), hidden * width, hidden, width * hidden, width];
-        let [mut gx, mut w1, mut b1, mut w2, mut b2] = counts.map(Sums::zeros);
+        let (rows, weights) = (self.x.len(), hidden * width);
+        let counts = [rows, rows, weights, hidden, weights, width];
+        let [mut y, mut gx, mut w1, mut b1, mut w2, mut b2] = counts.map(|count| vec![Sum::default(); count]);
         for row in 0..self.x.len() / width {
             let x = |k: usize| f64::from(self.x[row * width + k]);
             let gy = |i: usize| f64::from(self.gy[row * width + i]);
             for i in 0..width {
                 let b = f64::from(self.b2[i]);
-                y.add(row * width + i, b, b.abs(), false);
-                b2.add(i, gy(i), gy(i).abs(), false);
+                y[row * width + i].add(b, b.abs(), false);
+                b2[i].add(gy(i), gy(i).abs(), false);
             }
             for j in 0..hidden {
                 let factor = self.factor(row, j);
@@ -120,20 +107,17 @@ impl Case {
                 let active = if sum > 0.0 { factor } else { 0.0 };
                 let (sum, size) = (active * sum, factor * size);
                 let (back, back_size) = (active * back, factor * back_size);
-                b1.add(j, back, back_size, in_doubt);
+                b1[j].add(back, back_size, in_doubt);
                 for k in 0..width {
                     let w = f64::from(self.w2[k * hidden + j]);
-                    y.add(row * width + k, w * sum, w.abs() * size, false);
+                    y[row * width + k].add(w * sum, w.abs() * size, false);
                     let w = f64::from(self.w1[j * width + k]);
-                    gx.add(row * width + k, w * back, w.abs() * back_size, in_doubt);
-                    w1.add(j * width + k, x(k) * back, x(k).abs() * back_size, in_doubt);
-                    w2.add(k * hidden + j, gy(k) * sum, gy(k).abs() * size, false);
+                    gx[row * width + k].add(w * back, w.abs() * back_size, in_doubt);
+                    w1[j * width + k].add(x(k) * back, x(k).abs() * back_size, in_doubt);
+                    w2[k * hidden + j].add(gy(k) * sum, gy(k).abs() * size, false);
                 }
             }
         }
-        Exact {
-            y,
-            gradients: [gx, w1, b1, w2, b2],
-        }
+        [y, gx, w1, b1, w2, b2]
     }
 }
