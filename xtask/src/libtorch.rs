@@ -107,10 +107,8 @@ mod tests {
         let text = |file: &str| std::fs::read_to_string(workspace.path(file)).unwrap();
         let lock = text("Cargo.lock");
         for binding in ["tch", "torch-sys"] {
-            assert!(
-                lock.contains(&format!("name = \"{binding}\"\nversion = \"0.24.0\"\n")),
-                "{binding}"
-            );
+            let locked = format!("name = \"{binding}\"\nversion = \"0.24.0\"\n");
+            assert!(lock.contains(&locked), "{binding}");
         }
         assert!(text("xtask/libtorch.txt").contains(&format!("torch=={VERSION} ")));
         let recorded = format!("LIBTORCH_VERSION: &str = \"{VERSION}\"");

@@ -22,10 +22,8 @@ pub(crate) fn prepare(workspace: &Workspace, target: &str, command: &mut Command
     if find_on_path(OsStr::new("rustup")).is_some() && rustup().is_ok() {
         return Ok(());
     }
-    eprintln!(
-        "the standard library of {target} is built from Debian's {}",
-        PACKAGES.join(" and ")
-    );
+    let packages = PACKAGES.join(" and ");
+    eprintln!("the standard library of {target} is built from Debian's {packages}");
     debian::ensure_program(SOURCES, &PACKAGES)
         .with_context(|| format!("the target {target} needs `rustup target add {target}`"))?;
     // Debian's compiler is a stable one, which builds a standard library only if it is told to.

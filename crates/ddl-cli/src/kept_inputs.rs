@@ -1,11 +1,10 @@
 //! No command may write over what it reads: one guard for all options that name a file or folder.
 
 use crate::recordings::EXTENSIONS;
-use anyhow::bail;
-use clap::{Arg, ArgMatches, Command};
+use anyhow::{bail, ensure};
+use clap::{ArgMatches, Command};
 use ddl::RunDirectory;
 use ddl::data::{Convention, locate};
-use std::any::TypeId;
 use std::path::{Path, PathBuf};
 
 /// Options whose file or folder is written.
@@ -24,9 +23,9 @@ const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
 const WRITTEN: [&str; 3] = ["plan.json", "report.html", "report.md"];
 
 /// A path among the arguments, with the name of its option as users type it.
-struct Named<'a> {
+struct Named {
     option: String,
-    path: &'a Path,
+    path: PathBuf,
 }
 
 /// Refuses arguments whose output would replace one of their inputs, also through links, or cannot be written.
@@ -37,31 +36,36 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
     let Some((name, matches)) = matches.subcommand() else {
         return Ok(());
     };
-    let arguments = command
-        .find_subcommand(name)
-        .into_iter()
-        .flat_map(Command::get_arguments);
-    let is_output = |argument: &&Arg| OUTPUTS.contains(&argument.get_id().as_str());
-    let (outputs, inputs): (Vec<&Arg>, Vec<&Arg>) = arguments.partition(is_output);
-    let named = |arguments: Vec<&Arg>| -> Vec<Named<'_>> {
-        let paths = arguments.into_iter().flat_map(|argument| paths(argument, matches));
-        paths.collect()
-    };
-    for argument in outputs.iter().chain(&inputs) {
+    let command = command.find_subcommand(name).into_iter();
+    let (mut outputs, mut inputs) = (Vec::new(), Vec::new());
+    for argument in command.flat_map(Command::get_arguments) {
         let id = argument.get_id().as_str();
-        if NO_TEXTS.contains(&id) && is_standard(argument, matches) {
-            bail!(
-                "{} is no path: give that of a file or folder",
-                argument.get_long().map_or("-".to_owned(), |long| format!("--{long} -"))
+        // An error for arguments that are no paths.
+        let Ok(Some(paths)) = matches.try_get_many::<PathBuf>(id) else {
+            continue;
+        };
+        let named = argument.get_value_names().and_then(<[_]>::first);
+        let option = argument.get_long().map(|long| format!("--{long}"));
+        let option = option.unwrap_or_else(|| named.map_or_else(|| id.to_uppercase(), ToString::to_string));
+        for path in paths {
+            // `-` is standard input or output.
+            let is_standard = path == Path::new("-");
+            ensure!(
+                !is_standard || !NO_TEXTS.contains(&id),
+                "{option} - is no path: give that of a file or folder"
             );
+            if !is_standard {
+                let (option, path) = (option.clone(), path.clone());
+                let side = if OUTPUTS.contains(&id) {
+                    &mut outputs
+                } else {
+                    &mut inputs
+                };
+                side.push(Named { option, path });
+            }
         }
     }
-    let (outputs, mut inputs) = (named(outputs), named(inputs));
-    let standing = standing_inputs(matches);
-    inputs.extend(standing.iter().map(|(option, path)| Named {
-        option: (*option).into(),
-        path,
-    }));
+    inputs.extend(standing_inputs(matches));
     for output in &outputs {
         // Said before the work.
         if OUTPUT_FILES.contains(&output.option.as_str())
@@ -80,8 +84,8 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         }
         for input in &inputs {
             // A report reads the results in the folders of runs. Other commands add to a run.
-            let of_report = name == "report" && output.path.is_dir() && place(output.path) == place(input.path);
-            let lost = lost(output.path, input).or_else(|| of_report.then(|| input.path.to_owned()));
+            let of_report = name == "report" && output.path.is_dir() && place(&output.path) == place(&input.path);
+            let lost = lost(&output.path, input).or_else(|| of_report.then(|| input.path.clone()));
             if let Some(lost) = lost {
                 bail!(
                     "{} is an input ({}) and would be lost; give another {}",
@@ -96,76 +100,41 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
 }
 
 /// Refuses the folder of a run that is no input: its results would be replaced by others.
-fn ensure_no_other_run(output: &Named<'_>, inputs: &[Named<'_>]) -> anyhow::Result<()> {
+fn ensure_no_other_run(output: &Named, inputs: &[Named]) -> anyhow::Result<()> {
     let holds = |file: &&str| output.path.join(file).is_file();
     let weights = ["model.safetensors", "proposal.safetensors", "experts.safetensors"];
     let is_run = holds(&"config.json") && weights.iter().any(holds);
-    let here = place(output.path);
-    let is_of_it = |input: &Named<'_>| {
-        let there = place(input.path);
+    let here = place(&output.path);
+    let is_of_it = |input: &Named| {
+        let there = place(&input.path);
         let folder = there.as_deref().and_then(Path::parent);
         RUNS.contains(&input.option.as_str()) && (there == here || folder == here.as_deref())
     };
-    if is_run && !inputs.iter().any(is_of_it) {
-        bail!(
-            "{} is the folder of a run, whose results would be replaced; give another {}",
-            output.path.display(),
-            output.option
-        );
-    }
+    ensure!(
+        !is_run || inputs.iter().any(is_of_it),
+        "{} is the folder of a run, whose results would be replaced; give another {}",
+        output.path.display(),
+        output.option
+    );
     Ok(())
 }
 
 /// Inputs that no argument names: the recordings that are read by default, and the file that standard input reads.
-fn standing_inputs(matches: &ArgMatches) -> Vec<(&'static str, PathBuf)> {
-    let mut inputs = Vec::new();
-    if matches.try_contains_id("data").is_ok_and(|is_given| !is_given) {
-        let folders = Convention::ALL.map(|convention| locate(convention, None));
-        inputs.extend(
-            folders
-                .into_iter()
-                .flatten()
-                .map(|folder| ("the recordings of ETH/UCY", folder)),
-        );
-    }
-    let standard = PathBuf::from("/dev/stdin");
-    if standard.is_file() {
-        inputs.push(("standard input", standard));
-    }
-    inputs
-}
-
-/// Whether the argument is `-`.
-fn is_standard(argument: &Arg, matches: &ArgMatches) -> bool {
-    let given = matches.try_get_many::<PathBuf>(argument.get_id().as_str());
-    let mut given = given.ok().flatten().into_iter().flatten();
-    given.any(|path| path == Path::new("-"))
-}
-
-fn paths<'a>(argument: &Arg, matches: &'a ArgMatches) -> Vec<Named<'a>> {
-    if argument.get_value_parser().type_id() != TypeId::of::<PathBuf>() {
-        return Vec::new();
-    }
-    let option = if let Some(long) = argument.get_long() {
-        format!("--{long}")
-    } else {
-        let names = argument.get_value_names().and_then(<[_]>::first);
-        names.map_or_else(|| argument.get_id().to_string().to_uppercase(), ToString::to_string)
-    };
-    let given = matches.try_get_many::<PathBuf>(argument.get_id().as_str());
-    // `-` is standard input or output.
-    let given = given.ok().flatten().into_iter().flatten();
-    let given = given.filter(|path| *path != Path::new("-"));
-    given
-        .map(|path| Named {
-            option: option.clone(),
-            path,
-        })
-        .collect()
+fn standing_inputs(matches: &ArgMatches) -> impl Iterator<Item = Named> {
+    let is_default = matches.try_contains_id("data").is_ok_and(|is_given| !is_given);
+    let conventions = Convention::ALL.into_iter().filter(move |_| is_default);
+    let folders = conventions.filter_map(|convention| locate(convention, None).ok());
+    let folders = folders.map(|folder| ("the recordings of ETH/UCY", folder));
+    let standard = Some(PathBuf::from("/dev/stdin")).filter(|standard| standard.is_file());
+    let inputs = folders.chain(standard.map(|path| ("standard input", path)));
+    inputs.map(|(option, path)| Named {
+        option: option.to_owned(),
+        path,
+    })
 }
 
 /// The input that writing to `output` would replace.
-fn lost(output: &Path, Named { option, path: input }: &Named<'_>) -> Option<PathBuf> {
+fn lost(output: &Path, Named { option, path: input }: &Named) -> Option<PathBuf> {
     let (there, here) = (place(output)?, place(input)?);
     let replaced = if output.is_dir() {
         // Recordings have other names, and may lie in the folder of the results.

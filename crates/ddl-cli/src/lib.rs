@@ -64,8 +64,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         .unwrap_or_else(|error| error.format(&mut Cli::command()).exit())
         .command;
     let kept = kept_inputs::ensure_kept(&Cli::command(), &matches);
-    let result = kept.and_then(|()| run_command(command));
-    match result {
+    match kept.and_then(|()| run_command(command)) {
         Ok(()) => 0,
         // for example `ddl info | head -1`
         Err(error) if telling::reader_has_gone(&error) => 0,

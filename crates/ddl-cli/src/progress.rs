@@ -40,15 +40,6 @@ pub(crate) struct ProgressLine<'a> {
     pub(crate) message: Cow<'a, str>,
 }
 
-impl ProgressLine<'_> {
-    pub(crate) fn print(&self) {
-        if let Ok(line) = serde_json::to_string(self) {
-            // a closed output must not stop the work
-            let _ = writeln!(std::io::stdout(), "{line}");
-        }
-    }
-}
-
 impl Progress {
     pub(crate) fn new(stage: &'static str, mode: ProgressMode) -> Self {
         let visible = mode == ProgressMode::Auto && std::io::stderr().is_terminal();
@@ -59,11 +50,8 @@ impl Progress {
         };
         let style = ProgressStyle::with_template("{prefix:>9} [{bar:32}] {pos}/{len} {elapsed} (left {eta}) {msg}");
         // the template is a valid constant, so the default is never used
-        bar.set_style(
-            style
-                .unwrap_or_else(|_| ProgressStyle::default_bar())
-                .progress_chars("=> "),
-        );
+        let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
+        bar.set_style(style.progress_chars("=> "));
         bar.set_prefix(stage);
         Self {
             stage,
@@ -84,13 +72,17 @@ impl Progress {
             tell(format_args!("{}: {done} of {total} {message}", self.stage));
         }
         if self.mode == ProgressMode::Json {
-            ProgressLine {
-                stage: self.stage.into(),
+            let (stage, message) = (self.stage.into(), message.into());
+            let line = serde_json::to_string(&ProgressLine {
+                stage,
                 done,
                 total,
-                message: message.into(),
+                message,
+            });
+            if let Ok(line) = line {
+                // a closed output must not stop the work
+                let _ = writeln!(std::io::stdout(), "{line}");
             }
-            .print();
         }
     }
 

@@ -30,9 +30,7 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in std::fs::read_dir(folder).with_context(unreadable)? {
         let path = entry.with_context(unreadable)?.path();
-        let hidden = path
-            .file_name()
-            .is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        let hidden = path.file_name().unwrap_or_default().to_string_lossy().starts_with('.');
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
         let of_tracks = EXTENSIONS.iter().any(|of_tracks| extension == *of_tracks);
         if path.is_file() && !hidden && of_tracks && !units.are_from(&path) {
@@ -83,19 +81,14 @@ pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ReadRecording>) 
 
 /// Says what the frame numbers of windows and results count, where that is not what the files count.
 pub(crate) fn tell_ticks(read: &[ReadRecording]) {
-    let finer = read
-        .iter()
-        .map(|read| &read.timed)
-        .filter(|timed| !timed.clock.counts_frames());
-    let counted = finer.map(|timed| {
+    let finer = read.iter().filter(|read| !read.timed.clock.counts_frames());
+    let counted = finer.map(|ReadRecording { timed, .. }| {
         let counted = match timed.clock.tick(1) {
             Ok(ticks) if ticks > 1 => format!("parts of a frame, {ticks} in each"),
             _ => "microseconds".to_owned(),
         };
-        (
-            timed.recording.name(),
-            format!("the frames of windows and results count {counted}"),
-        )
+        let words = format!("the frames of windows and results count {counted}");
+        (timed.recording.name(), words)
     });
     tell_grouped("note", counted);
 }
@@ -139,12 +132,8 @@ pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
         let warning = recording.speed_warning();
         let misfits = words_of_misfits(recording, *clock, &observed.misfits, warning.as_ref());
         let warning = warning.map(|warning| words_of_warning(&in_frames(*clock, warning)));
-        warnings.extend(
-            warning
-                .into_iter()
-                .chain(misfits)
-                .map(|words| (recording.name(), words)),
-        );
+        let doubts = warning.into_iter().chain(misfits);
+        warnings.extend(doubts.map(|words| (recording.name(), words)));
         notes.extend((!observed.has_common_frames).then(|| (recording.name(), OWN_CLOCKS.to_owned())));
     }
     tell_grouped("note", notes);

@@ -113,16 +113,18 @@ impl Units {
     }
 
     pub(crate) fn as_options(&self) -> String {
-        let homography = self.homography.as_ref();
-        let homography = homography.map(|file| format!(" --homography {}", shell_word(file)));
-        let rate = self.rate().rate_option().map(|rate| format!(" {rate}"));
-        let columns = self.columns.as_ref().map(|columns| ("columns", columns.to_string()));
-        let keep = self.keep.as_ref().map(|text| ("keep", text.clone()));
-        let unit = self.unit.as_ref().map(|unit| ("unit", unit.clone()));
-        let topic = self.topic.as_ref().map(|topic| ("topic", topic.clone()));
-        let of_columns = columns.into_iter().chain(keep).chain(unit).chain(topic);
-        let of_columns = of_columns.map(|(option, value)| format!(" --{option} {}", shell_word(Path::new(&value))));
-        rate.unwrap_or_default() + &homography.unwrap_or_default() + &of_columns.collect::<String>()
+        let rate = self.rate_given().map(|rate| format!(" {rate}"));
+        let columns = self.columns.as_ref().map(ToString::to_string);
+        let others = [
+            ("homography", self.homography.as_deref()),
+            ("columns", columns.as_deref().map(Path::new)),
+            ("keep", self.keep.as_deref().map(Path::new)),
+            ("unit", self.unit.as_deref().map(Path::new)),
+            ("topic", self.topic.as_deref().map(Path::new)),
+        ];
+        let others = others.into_iter().filter_map(|(option, value)| Some((option, value?)));
+        let others = others.map(|(option, value)| format!(" --{option} {}", shell_word(value)));
+        rate.into_iter().chain(others).collect()
     }
 
     /// Whether this file is the homography, which may be stored in the folder of the recordings.

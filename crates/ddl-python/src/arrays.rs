@@ -94,29 +94,23 @@ pub(crate) fn forecast(
              in metres; found {shape:?}"
     );
     let [n, k] = [shape[0], shape[1]];
-    if let Some(goals) = goals {
-        ensure!(
-            goals.shape() == [n, k, 2],
-            "goals must have the shape ({n}, {k}, 2) of these paths; found {:?}",
-            goals.shape()
-        );
-    }
-    if let Some(weights) = weights {
-        ensure!(
-            weights.shape() == [n, k],
-            "weights must have the shape ({n}, {k}) of these paths; found {:?}",
-            weights.shape()
-        );
-    }
+    let shape_of_goals = goals.map_or(vec![n, k, 2], |goals| goals.shape().to_vec());
+    ensure!(
+        shape_of_goals == [n, k, 2],
+        "goals must have the shape ({n}, {k}, 2) of these paths; found {shape_of_goals:?}"
+    );
+    let shape_of_weights = weights.map_or(vec![n, k], |weights| weights.shape().to_vec());
+    ensure!(
+        shape_of_weights == [n, k],
+        "weights must have the shape ({n}, {k}) of these paths; found {shape_of_weights:?}"
+    );
     let positions = flat("paths", paths)?.as_chunks::<2>().0.to_vec();
     let weights = match weights {
         Some(weights) => flat("weights", weights)?.to_vec(),
         None => vec![1.0 / k.max(1) as f64; n * k],
     };
-    let goals = match goals {
-        Some(goals) => Some(flat("goals", goals)?.as_chunks::<2>().0.to_vec()),
-        None => None,
-    };
+    let goals = goals.map(|goals| flat("goals", goals)).transpose()?;
+    let goals = goals.map(|goals| goals.as_chunks::<2>().0.to_vec());
     ddl::Forecast::new(n, k, positions, weights, goals).map_err(of_any)
 }
 

@@ -13,7 +13,6 @@ use pyo3::types::PyDict;
 
 /// Forecasts the first `asked` pedestrians with the baseline `name`.
 #[pyfunction]
-#[pyo3(signature = (name, past, asked, seed, goals))]
 pub(crate) fn baseline<'py>(
     py: Python<'py>,
     name: &str,
@@ -30,16 +29,11 @@ pub(crate) fn baseline<'py>(
         "constant_acceleration" => Box::new(ConstantAcceleration),
         "social_force" => Box::new(SocialForce),
         "straight_line" => Box::new(StraightLine(given(goals.as_ref(), &scene)?)),
-        _ => {
-            return Err(PyValueError::new_err(format!("there is no baseline {name:?}")));
-        }
+        _ => return Err(PyValueError::new_err(format!("there is no baseline {name:?}"))),
     };
-    let forecast = scene
-        .window
-        .as_ref()
-        .map(|window| py.detach(|| forecaster.forecast(window)));
-    let forecast = forecast.transpose().map_err(of_any)?;
-    let forecast = forecast.map(CertifiedForecast::from);
+    let window = scene.window.as_ref();
+    let forecast = window.map(|window| py.detach(|| forecaster.forecast(window)));
+    let forecast = forecast.transpose().map_err(of_any)?.map(CertifiedForecast::from);
     let goals = goals.map(|goals| goals.shape()[1]);
     let many = if name == "angular_noise" { 20 } else { 1 };
     let empty = EmptyFields {

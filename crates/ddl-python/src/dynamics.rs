@@ -21,7 +21,6 @@ pub(crate) struct Flow(NaturalGradientFlow<f64, 2, MetricSchedule<f64, 2>>);
 impl Flow {
     /// `metrics` `(steps, 2, 2)`, symmetric and positive definite; further steps use the last one.
     #[new]
-    #[pyo3(signature = (goal, metrics))]
     fn new(goal: [f64; 2], metrics: PyReadonlyArray3<'_, f64>) -> PyResult<Self> {
         let attractor = Attractor::new(goal.into()).map_err(of_any)?;
         let matrices = flat("P", &metrics)?.as_chunks::<4>().0.iter().enumerate();
@@ -74,10 +73,8 @@ impl Flow {
         dict.set_item("holds", violation.is_none())?;
         dict.set_item("violation", violation.map(|violation| violation.to_string()))?;
         dict.set_item("potentials", array(py, potentials, length)?)?;
-        let eigenvalue = certificate.min_eigenvalue().unwrap_or(f64::NAN);
-        dict.set_item("min_eigenvalue", eigenvalue)?;
-        let margin = certificate.min_step_margin().unwrap_or(f64::NAN);
-        dict.set_item("min_step_margin", margin)?;
+        dict.set_item("min_eigenvalue", certificate.min_eigenvalue().unwrap_or(f64::NAN))?;
+        dict.set_item("min_step_margin", certificate.min_step_margin().unwrap_or(f64::NAN))?;
         dict.set_item("largest_angle", certificate.largest_angle())?;
         Ok(dict)
     }

@@ -35,20 +35,17 @@ pub(crate) fn of_any(error: impl Error + 'static) -> PyErr {
     let mut cause: Option<&(dyn Error + 'static)> = Some(&error);
     while let Some(one) = cause {
         if let Some(io) = one.downcast_ref::<std::io::Error>() {
-            return of_io(io.kind(), ddl::with_causes(&error));
+            let message = ddl::with_causes(&error);
+            return match io.kind() {
+                ErrorKind::NotFound => PyFileNotFoundError::new_err(message),
+                ErrorKind::PermissionDenied => PyPermissionError::new_err(message),
+                ErrorKind::IsADirectory => PyIsADirectoryError::new_err(message),
+                _ => PyOSError::new_err(message),
+            };
         }
         cause = one.source();
     }
     PyValueError::new_err(ddl::with_causes(&error))
-}
-
-fn of_io(kind: ErrorKind, message: String) -> PyErr {
-    match kind {
-        ErrorKind::NotFound => PyFileNotFoundError::new_err(message),
-        ErrorKind::PermissionDenied => PyPermissionError::new_err(message),
-        ErrorKind::IsADirectory => PyIsADirectoryError::new_err(message),
-        _ => PyOSError::new_err(message),
-    }
 }
 
 /// The value that has this name.

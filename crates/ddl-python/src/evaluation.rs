@@ -31,17 +31,12 @@ fn dataset(convention: Convention, folder: Option<PathBuf>) -> Result<Dataset, D
 /// The conventions, with their folds.
 #[pyfunction]
 pub(crate) fn conventions() -> Vec<(&'static str, Vec<&'static str>)> {
-    let planned = Convention::ALL
-        .into_iter()
-        .filter(|convention| *convention != Convention::Own);
-    planned
-        .map(|convention| (convention.name(), convention.fold_names().collect()))
-        .collect()
+    let planned = Convention::ALL.into_iter().filter(|it| *it != Convention::Own);
+    planned.map(|it| (it.name(), it.fold_names().collect())).collect()
 }
 
 /// The windows of a fold, or of a recording, with their futures.
 #[pyfunction]
-#[pyo3(signature = (convention, folder, fold, part, rule, recording))]
 pub(crate) fn windows<'py>(
     py: Python<'py>,
     convention: &str,
@@ -77,12 +72,8 @@ fn window_parts<'py>(py: Python<'py>, window: &Window, moments: Option<Moments>)
     let n = window.len();
     let dict = PyDict::new(py);
     dict.set_item("recording", window.recording())?;
-    dict.set_item(
-        "frame",
-        moments
-            .unwrap_or(Moments::FRAMES)
-            .one(py, window.frames()[OBSERVED - 1])?,
-    )?;
+    let last = window.frames()[OBSERVED - 1];
+    dict.set_item("frame", moments.unwrap_or(Moments::FRAMES).one(py, last)?)?;
     match moments {
         Some(moments) => dict.set_item("frame_step", moments.step(py)?)?,
         None => dict.set_item("frame_step", window.frame_step())?,
@@ -110,7 +101,6 @@ pub(crate) struct TestSet {
 #[pymethods]
 impl TestSet {
     #[new]
-    #[pyo3(signature = (convention, folder, fold, rule))]
     fn new(
         py: Python<'_>,
         convention: &str,
@@ -122,10 +112,8 @@ impl TestSet {
         let rule: WindowRule = rule.map_or(Ok(convention.headline_rule()), parsed)?;
         let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
         let fold_by_name = dataset.fold(fold).map_err(raised)?;
-        let recordings = fold_by_name
-            .test_recordings()
-            .iter()
-            .map(|tracks| Recording::of_ticks((*tracks).clone()));
+        let recordings = fold_by_name.test_recordings().iter();
+        let recordings = recordings.map(|tracks| Recording::of_ticks((*tracks).clone()));
         Ok(Self {
             convention,
             rule,

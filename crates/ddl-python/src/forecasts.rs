@@ -35,20 +35,21 @@ pub(crate) fn parts<'py>(
     let rows = &observed.rows;
     let (n, k) = (rows.len(), forecast.map_or(empty.hypotheses, Forecast::hypotheses));
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
-    let pairs = || rows.iter().flat_map(move |row| (0..k).map(move |k| (row, k)));
-    let paths = pairs().flat_map(|(row, k)| match of_row(row) {
+    let pairs = || {
+        rows.iter()
+            .map(of_row)
+            .flat_map(move |row| (0..k).map(move |k| (row, k)))
+    };
+    let paths = pairs().flat_map(|(row, k)| match row {
         Some((forecast, i)) => forecast.hypothesis(i, k).to_vec(),
         None => vec![[f64::NAN; 2]; HORIZON],
     });
-    let weights = pairs().map(|(row, k)| of_row(row).map_or(f64::NAN, |(forecast, i)| forecast.weight(i, k)));
+    let weights = pairs().map(|(row, k)| row.map_or(f64::NAN, |(forecast, i)| forecast.weight(i, k)));
     let goals = pairs().map(|(row, k)| {
-        let goal = of_row(row).and_then(|(forecast, i)| forecast.goal(i, k));
-        goal.unwrap_or([f64::NAN; 2])
+        row.and_then(|(forecast, i)| forecast.goal(i, k))
+            .unwrap_or([f64::NAN; 2])
     });
-    let certified = pairs().map(|(row, k)| {
-        let verdict = of_row(row).and_then(|(forecast, i)| forecast.certified(i, k));
-        verdict.unwrap_or(false)
-    });
+    let certified = pairs().map(|(row, k)| row.and_then(|(forecast, i)| forecast.certified(i, k)) == Some(true));
     let familiarity = rows.iter().map(|row| {
         let familiarity = of_row(row).and_then(|(forecast, i)| forecast.familiarity(i));
         familiarity.unwrap_or(f64::NAN)
@@ -57,18 +58,12 @@ pub(crate) fn parts<'py>(
     observed_rows(py, observed, &dict)?;
     dict.set_item("paths", array(py, numbers(paths.collect()), [n, k, HORIZON, 2])?)?;
     dict.set_item("weights", array(py, weights.collect(), [n, k])?)?;
-    let goals = if forecast.map_or(empty.goals, Forecast::has_goals) {
-        Some(array(py, numbers(goals.collect()), [n, k, 2])?)
-    } else {
-        None
-    };
-    dict.set_item("goals", goals)?;
-    let certified = if forecast.map_or(empty.certified, |forecast| forecast.certified(0, 0).is_some()) {
-        Some(array(py, certified.collect(), [n, k])?)
-    } else {
-        None
-    };
-    dict.set_item("certified", certified)?;
+    let has_goals = forecast.map_or(empty.goals, Forecast::has_goals);
+    let goals = has_goals.then(|| array(py, numbers(goals.collect()), [n, k, 2]));
+    dict.set_item("goals", goals.transpose()?)?;
+    let is_certified = forecast.map_or(empty.certified, |forecast| forecast.certified(0, 0).is_some());
+    let certified = is_certified.then(|| array(py, certified.collect(), [n, k]));
+    dict.set_item("certified", certified.transpose()?)?;
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
     spread_and_regions(py, rows, forecast, empty, &dict)?;
     let has_evidence = forecast_of_window.map_or(empty.certificates, |one| !one.certificates.is_empty());
@@ -96,11 +91,8 @@ fn spread_and_regions(
         Some(forecast) => forecast.regions(),
         None => empty.regions.then(ddl::region_table),
     };
-    let spread = match table {
-        Some(_) => Some(array(py, spread.collect(), [rows.len(), HORIZON])?),
-        None => None,
-    };
-    dict.set_item("spread", spread)?;
+    let spread = table.map(|_| array(py, spread.collect(), [rows.len(), HORIZON]));
+    dict.set_item("spread", spread.transpose()?)?;
     let table = table.map(serde_json::to_string).transpose();
     dict.set_item("region_table", table.map_err(of_any)?)
 }
@@ -109,10 +101,8 @@ fn spread_and_regions(
 fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
-    let qualities = || {
-        rows.iter()
-            .map(|row| window.zip(*row).map(|(window, i)| window.quality(i)))
-    };
+    let of_row = |row: &Option<usize>| window.zip(*row).map(|(window, i)| window.quality(i));
+    let qualities = || rows.iter().map(of_row);
     let unseen = qualities().map(|quality| quality.map_or(0, |quality| quality.unseen as i64));
     let age = qualities().map(|quality| quality.map_or(f64::NAN, |quality| quality.age));
     let deviation = qualities().map(|quality| quality.map_or(f64::NAN, |quality| quality.deviation));
@@ -121,8 +111,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
         Some((window, i)) => window.observed(i).to_vec(),
         None => vec![[f64::NAN; 2]; OBSERVED],
     });
-    let past = array(py, numbers(past.collect()), [n, OBSERVED, 2])?;
-    dict.set_item("past", past)?;
+    dict.set_item("past", array(py, numbers(past.collect()), [n, OBSERVED, 2])?)?;
     dict.set_item("unseen", array(py, unseen.collect(), [n])?)?;
     dict.set_item("age", array(py, age.collect(), [n])?)?;
     dict.set_item("deviation", array(py, deviation.collect(), [n])?)?;
@@ -217,9 +206,8 @@ pub(crate) fn region_radii<'py>(
         let of_known = forecast_rows.iter().flat_map(|&i| rows.row(i).to_vec()).collect();
         let scales = forecast_rows.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
         let paces = forecast_rows.iter().map(|&i| {
-            let observed: Vec<_> = (0..OBSERVED)
-                .map(|t| [0, 1].map(|axis| past.as_array()[[i, t, axis]]))
-                .collect();
+            let observed = (0..OBSERVED).map(|t| [0, 1].map(|axis| past.as_array()[[i, t, axis]]));
+            let observed: Vec<_> = observed.collect();
             Pace::of(&observed, TIME_STEP, uncertainty.as_array()[i])
         });
         let spread = Spread {
@@ -232,11 +220,9 @@ pub(crate) fn region_radii<'py>(
             .and_then(|forecast| forecast.with_spread(spread))
             .map_err(of_any)?;
         for (place, i) in forecast_rows.into_iter().enumerate() {
-            for k_of in 0..k {
-                for t in 0..HORIZON {
-                    let radius = forecast.region_radius(place, k_of, t, level);
-                    radii[(i * k + k_of) * HORIZON + t] = radius.unwrap_or(f64::NAN);
-                }
+            for (at, radius) in radii[i * k * HORIZON..][..k * HORIZON].iter_mut().enumerate() {
+                let known = forecast.region_radius(place, at / HORIZON, at % HORIZON, level);
+                *radius = known.unwrap_or(f64::NAN);
             }
         }
     }

@@ -76,9 +76,8 @@ pub(crate) fn run_on<T: Send + 'static>(
                 }
             }
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err(
-                    "a thread of ddl_forecast has ended unexpectedly",
-                ));
+                let message = "a thread of ddl_forecast has ended unexpectedly";
+                return Err(PyRuntimeError::new_err(message));
             }
         }
     }

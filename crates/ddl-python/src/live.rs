@@ -46,14 +46,17 @@ struct Answer {
 impl WatchedPlace {
     fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
         let forecast = if self.joint {
-            let now = self.live.push_joint(frame, seen, None)?;
-            now.map(|now| (now.window, now.forecast.into()))
+            self.live
+                .push_joint(frame, seen, None)?
+                .map(|now| (now.window, now.forecast.into()))
         } else if self.certificates {
-            let now = self.live.push_certified(frame, seen)?;
-            now.map(|now| (now.window, now.forecast))
+            self.live
+                .push_certified(frame, seen)?
+                .map(|now| (now.window, now.forecast))
         } else {
-            let now = self.live.push(frame, seen)?;
-            now.map(|now| (now.window, now.forecast.into()))
+            self.live
+                .push(frame, seen)?
+                .map(|now| (now.window, now.forecast.into()))
         };
         // The frame has been observed, so a full disk must not discard its forecast.
         let written = MemoryFile::write_if_due(self.file.as_mut(), self.live.place());
@@ -117,7 +120,6 @@ fn held(slot: &SharedPlace) -> MutexGuard<'_, Option<Box<WatchedPlace>>> {
 #[pymethods]
 impl Live {
     #[new]
-    #[pyo3(signature = (model, fps, memory, whole, max_age, every, certificates, joint))]
     fn new(
         model: &Model,
         fps: Option<f64>,
@@ -159,7 +161,6 @@ impl Live {
     /// A forecast (`None` without pedestrians to forecast), the pedestrians whose positions do not fit, each with its
     /// distance from where it was expected, and an error if the memory could not be written. With a unit, `frame` is a
     /// time in microseconds. `words` are the names of ids.
-    #[pyo3(signature = (frame, unit, ids, xy, words))]
     fn observe<'py>(
         &self,
         py: Python<'py>,

@@ -33,11 +33,8 @@ fn window(
         pasts.len(),
         truth.len()
     );
-    let whole: Vec<Vec<Position>> = pasts
-        .into_iter()
-        .zip(truth)
-        .map(|(past, future)| [past, future].concat())
-        .collect();
+    let whole = pasts.into_iter().zip(truth);
+    let whole: Vec<Vec<Position>> = whole.map(|(past, future)| [past, future].concat()).collect();
     let ids = (0..whole.len() as i64).map(PedestrianId).collect();
     Window::new("scene", start_frame, 1, ids, whole).map_err(of_any)
 }
@@ -100,9 +97,7 @@ pub(crate) fn mahalanobis(
         let errors: Vec<DistributionErrors> = several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
         let distances = errors.iter().map(|errors| errors.mahalanobis).collect();
         let covariances = errors.iter().map(|errors| errors.covariance);
-        let covariances = covariances
-            .flat_map(|covariance| [covariance.xx, covariance.xy, covariance.yy])
-            .collect();
+        let covariances = covariances.flat_map(|it| [it.xx, it.xy, it.yy]).collect();
         Ok((array(py, distances, [n])?, array(py, covariances, [n, 3])?))
     })
 }
@@ -133,10 +128,10 @@ pub(crate) fn collisions(
     let slices: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
     let n = slices.len();
     let nearest = |i: usize| {
-        let others = (0..n).filter(|j| *j != i);
-        others.fold(f64::INFINITY, |least, j| {
-            least.min(closest_approach(slices[i], slices[j]))
-        })
+        let others = (0..n)
+            .filter(|j| *j != i)
+            .map(|j| closest_approach(slices[i], slices[j]));
+        others.fold(f64::INFINITY, f64::min)
     };
     let (collides, nearest) = py.detach(|| {
         let nearest: Vec<f64> = (0..n).map(nearest).collect();

@@ -116,7 +116,6 @@ impl Model {
     }
 
     /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`. Also returns text about doubtful positions.
-    #[pyo3(signature = (past, asked, samples, whole, certificates, joint, given))]
     fn forecast<'py>(
         &self,
         py: Python<'py>,
@@ -161,7 +160,6 @@ impl Model {
     /// Forecasts each moment of the recording with pedestrians to forecast, or only the last of them. Also returns text
     /// about doubtful positions.
     #[expect(clippy::fn_params_excessive_bools, reason = "switches of a Python function")]
-    #[pyo3(signature = (recording, last, samples, whole, max_age, every, certificates, joint))]
     fn forecast_recording<'py>(
         &self,
         py: Python<'py>,

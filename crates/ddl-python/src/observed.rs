@@ -57,12 +57,9 @@ impl Observed {
 
     /// Text about positions of the array that do not fit their tracks.
     pub(crate) fn doubt(&self) -> Option<String> {
-        let doubt = Misfit::words(&self.misfits, |misfit| {
-            format!("past[{}, {}]", misfit.pedestrian.0, misfit.tick)
-        })?;
-        Some(format!(
-            "{doubt}; check that positions are in metres and steps are 0.4 s"
-        ))
+        let place = |misfit: &Misfit| format!("past[{}, {}]", misfit.pedestrian.0, misfit.tick);
+        let doubt = Misfit::words(&self.misfits, place)?;
+        Some(doubt + "; check that positions are in metres and steps are 0.4 s")
     }
 }
 

@@ -89,7 +89,6 @@ impl Recording {
 #[pymethods]
 impl Recording {
     #[new]
-    #[pyo3(signature = (frame, unit, id, x, y, words, fps, frame_step, name))]
     fn new(
         frame: PyReadonlyArray1<'_, i64>,
         unit: Option<&str>,
@@ -125,9 +124,8 @@ impl Recording {
         let made = Tracks::in_usual_step(name, observations);
         let mut tracks = made.map_err(|error| match error {
             RecordingError::Row(LiveError::Duplicate { pedestrian, frame }) => {
-                let word = words
-                    .as_ref()
-                    .and_then(|words| words.get((pedestrian.0 - FRAME_LIMIT) as usize));
+                let words = words.as_ref();
+                let word = words.and_then(|words| words.get((pedestrian.0 - FRAME_LIMIT) as usize));
                 let pedestrian = word.map_or_else(|| pedestrian.to_string(), |word| format!("{word:?}"));
                 let moment = unit.map_or(Moments::FRAMES, Moments::of_times).words(frame);
                 PyValueError::new_err(format!("pedestrian {pedestrian} is in {moment} twice"))
@@ -232,9 +230,8 @@ impl Recording {
     fn columns(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
         let observations = self.tracks.observations();
         let n = observations.len();
-        let frame = self
-            .moments
-            .all(py, observations.iter().map(|seen| seen.frame).collect())?;
+        let frames = observations.iter().map(|seen| seen.frame);
+        let frame = self.moments.all(py, frames.collect())?;
         let axis = |axis: usize| array(py, observations.iter().map(|seen| seen.position[axis]).collect(), [n]);
         let names = self.tracks.names();
         let numbered = observations.iter().map(|seen| match names.of(seen.pedestrian) {

@@ -109,12 +109,9 @@ pub(crate) fn clearances<'py>(
     let (count, people) = (plans.len(), futures.pedestrians());
     let clearances = run(py, move |_| futures.clearances(&plans))?.map_err(of_any)?;
     let of_each = clearances.iter().flat_map(|clearance| clearance.pedestrians.clone());
+    let nearest = clearances.iter().map(|clearance| clearance.nearest);
     Ok([
-        array(
-            py,
-            clearances.iter().map(|clearance| clearance.nearest).collect(),
-            [count],
-        )?,
+        array(py, nearest.collect(), [count])?,
         array(py, of_each.collect(), [count, people])?,
     ])
 }
@@ -132,9 +129,7 @@ pub(crate) fn occupancy<'py>(
     let area = match (area, &futures) {
         (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
         (None, Some(futures)) => futures.area(margin, cell),
-        (None, None) => {
-            return Err(PyValueError::new_err("no pedestrian could be forecast: give area="));
-        }
+        (None, None) => return Err(PyValueError::new_err("no pedestrian could be forecast: give area=")),
     };
     not_negative("radius", radius)?;
     let area = area.map_err(of_any)?;

@@ -120,18 +120,7 @@ pub(crate) fn value(
     gamma: f64,
     normalised: bool,
 ) -> PyResult<f64> {
-    let dtw = SoftDtw::new(gamma).map_err(of_any)?;
-    let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
-    let components = x.shape()[1];
-    in_dimension!(components, D => {
-        let x = steps::<D>(&x, components, "x")?;
-        let y = steps::<D>(&y, components, "y")?;
-        let (x, y) = (&*x, &*y);
-        let computed = unlocked(py, x.len() * y.len(), || {
-            if normalised { dtw.normalised(x, y) } else { dtw.value(x, y) }
-        });
-        computed.map_err(of_any)
-    })
+    Ok(computed(py, [x, y], gamma, normalised, false)?.0)
 }
 
 /// Soft-DTW, and its gradient (n, components) with respect to `x`; see `value`.
@@ -144,6 +133,17 @@ pub(crate) fn value_and_gradient(
     gamma: f64,
     normalised: bool,
 ) -> PyResult<(f64, Py<PyAny>)> {
+    computed(py, [x, y], gamma, normalised, true)
+}
+
+/// The value, and the gradient if it is asked for; `None` in Python otherwise.
+fn computed(
+    py: Python<'_>,
+    [x, y]: [&Bound<'_, PyAny>; 2],
+    gamma: f64,
+    normalised: bool,
+    with_gradient: bool,
+) -> PyResult<(f64, Py<PyAny>)> {
     let dtw = SoftDtw::new(gamma).map_err(of_any)?;
     let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
     let components = x.shape()[1];
@@ -152,25 +152,23 @@ pub(crate) fn value_and_gradient(
         let y = steps::<D>(&y, components, "y")?;
         let (x, y) = (&*x, &*y);
         ensure!(
-            x.len().saturating_mul(y.len()) <= MOST_CELLS,
+            !with_gradient || x.len().saturating_mul(y.len()) <= MOST_CELLS,
             "a gradient of {} x {} steps exceeds the memory limit ({MOST_CELLS} cells of 24 bytes); use fewer steps",
             x.len(),
             y.len()
         );
-        let computed = unlocked(py, x.len() * y.len(), || {
-            if normalised {
-                dtw.normalised_and_gradient(x, y)
-            } else {
-                dtw.value_and_gradient(x, y)
-            }
+        let computed = unlocked(py, x.len().saturating_mul(y.len()), || match (with_gradient, normalised) {
+            (false, false) => dtw.value(x, y).map(|value| (value, None)),
+            (false, true) => dtw.normalised(x, y).map(|value| (value, None)),
+            (true, false) => dtw.value_and_gradient(x, y).map(|(value, gradient)| (value, Some(gradient))),
+            (true, true) => dtw.normalised_and_gradient(x, y).map(|(value, gradient)| (value, Some(gradient))),
         });
         let (value, gradient) = computed.map_err(of_any)?;
-        let length = gradient.len();
-        let flat = if components == D {
-            gradient.into_flattened()
-        } else {
-            gradient.iter().flat_map(|step| &step[..components]).copied().collect()
+        let Some(gradient) = gradient else {
+            return Ok((value, py.None()));
         };
+        let length = gradient.len();
+        let flat = gradient.iter().flat_map(|step| &step[..components]).copied().collect();
         Ok((value, array(py, flat, [length, components])?))
     })
 }
@@ -194,7 +192,7 @@ fn all_steps<const D: usize>(
 }
 
 fn sequences<'py>(objects: &[Bound<'py, PyAny>], name: &str) -> PyResult<Vec<PyReadonlyArray2<'py, f64>>> {
-    let each = objects.iter().enumerate();
+    let each = (0_usize..).zip(objects);
     each.map(|(index, object)| sequence(object, &format!("{name}[{index}]")))
         .collect()
 }

@@ -134,6 +134,8 @@ impl ForecastSnapshot {
     }
 
     fn of((fold, forecaster): (String, String), window: &Window, forecast: &Forecast, truths: &[&[Position]]) -> Self {
+        let truths = truths.iter().enumerate();
+        let pedestrians = truths.map(|(i, truth)| pedestrian(window, forecast, truth, i));
         Self {
             fold,
             forecaster,
@@ -141,11 +143,7 @@ impl ForecastSnapshot {
             frame: window.frames()[OBSERVED - 1],
             when: None,
             frame_step: window.frame_step(),
-            pedestrians: truths
-                .iter()
-                .enumerate()
-                .map(|(i, truth)| pedestrian(window, forecast, truth, i))
-                .collect(),
+            pedestrians: pedestrians.collect(),
             joint: false,
             groups: Vec::new(),
         }

@@ -85,15 +85,10 @@ fn lead_out(workspace: &Workspace, site: &Path) -> Result<()> {
     for page in fs::read_dir(workspace.path(BOOK))?.flatten() {
         let text = fs::read(page.path()).unwrap_or_default();
         let text = String::from_utf8_lossy(&text);
-        for target in text
-            .split("](../")
-            .skip(1)
-            .filter_map(|rest| rest.split([')', '#']).next())
-        {
-            let of_crate = target
-                .strip_prefix("crates/")
-                .and_then(|rest| rest.strip_suffix("/README.md"));
-            if let Some(folder) = of_crate {
+        let links = text.split("](../").skip(1);
+        for target in links.filter_map(|rest| rest.split([')', '#']).next()) {
+            let of_crate = target.strip_prefix("crates/");
+            if let Some(folder) = of_crate.and_then(|rest| rest.strip_suffix("/README.md")) {
                 let interface = format!("../../api/{}/index.html", module(folder));
                 redirect(&site.join(target).with_extension("html"), &interface)?;
             } else {

@@ -37,9 +37,8 @@ impl Arguments {
         let wheel = build(workspace)?;
         println!("{}", wheel.display());
         if !self.no_tests {
-            run(pip_install(workspace)
-                .args(["--no-deps", "--force-reinstall"])
-                .arg(wheel))?;
+            let mut pip = pip_install(workspace);
+            run(pip.args(["--no-deps", "--force-reinstall"]).arg(wheel))?;
             test(workspace, &self.rest)?;
         }
         Ok(())
@@ -70,10 +69,8 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
     fs::copy(&library, package.join("_core.abi3.so")).with_context(|| library.display().to_string())?;
     let bin = workspace.path(ENVIRONMENT).join("bin");
     let program = "import sys; from ddl_forecast.__main__ import main; sys.exit(main())";
-    fs::write(
-        bin.join("ddl"),
-        format!("#!/bin/sh\nexec {}/python -c '{program}' \"$@\"\n", bin.display()),
-    )?;
+    let script = format!("#!/bin/sh\nexec {}/python -c '{program}' \"$@\"\n", bin.display());
+    fs::write(bin.join("ddl"), script)?;
     run(Command::new("chmod").arg("755").arg(bin.join("ddl")))?;
     test(workspace, &[])?;
     run(&mut test_node(workspace, "target/debug/ddl-ros2"))
@@ -83,9 +80,8 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
 pub(super) fn check_node_for_long(workspace: &Workspace) -> Result<()> {
     make_environment(workspace)?;
     run(&mut workspace.cargo("build --release --package ddl-ros2".split(' ')))?;
-    run(test_node(workspace, "target/release/ddl-ros2")
-        .arg("-rP")
-        .env("DDL_NIGHTLY", "1"))
+    let mut pytest = test_node(workspace, "target/release/ddl-ros2");
+    run(pytest.arg("-rP").env("DDL_NIGHTLY", "1"))
 }
 
 /// The tests of the ROS 2 node, which need another DDS.

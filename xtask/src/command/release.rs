@@ -102,11 +102,8 @@ fn wheels(workspace: &Workspace, files: &Path) -> Result<()> {
         let mut maturin = tools.program(workspace, "maturin");
         let options = "build --quiet --zig --profile wheel --compatibility manylinux2014 --manifest-path \
                        crates/ddl-python/Cargo.toml --target-dir target/portable --target";
-        maturin
-            .args(options.split_whitespace())
-            .arg(target)
-            .arg("--out")
-            .arg(files);
+        maturin.args(options.split_whitespace()).arg(target);
+        maturin.arg("--out").arg(files);
         with_target(workspace, &mut maturin, target)?;
         run(&mut maturin)?;
     }
@@ -119,10 +116,8 @@ fn with_target(workspace: &Workspace, command: &mut Command, target: &str) -> Re
     if target != OWN {
         rust_target::prepare(workspace, target, command)?;
     }
-    command.env(
-        "RUSTFLAGS",
-        format!("--remap-path-prefix={}=.", workspace.root.display()),
-    );
+    let flags = format!("--remap-path-prefix={}=.", workspace.root.display());
+    command.env("RUSTFLAGS", flags);
     Ok(())
 }
 
@@ -132,12 +127,8 @@ fn check_paths(workspace: &Workspace, file: &Path) -> Result<()> {
     let here = [workspace.path("target"), cache::folder()?];
     for folder in here.map(|folder| folder.into_os_string().into_encoded_bytes()) {
         let is_named = bytes.windows(folder.len()).any(|part| part == folder);
-        ensure!(
-            !is_named,
-            "{} names {}",
-            file.display(),
-            String::from_utf8_lossy(&folder)
-        );
+        let named = String::from_utf8_lossy(&folder);
+        ensure!(!is_named, "{} names {named}", file.display());
     }
     Ok(())
 }
@@ -146,10 +137,8 @@ fn npm_package(workspace: &Workspace, files: &Path) -> Result<()> {
     debian::ensure_program("npm", &["npm"])?;
     web::build(workspace)?;
     let mut npm = workspace.program("npm");
-    run(npm
-        .args(["pack", "--silent", "--pack-destination"])
-        .arg(files)
-        .arg(workspace.path(web::PACKAGE)))
+    npm.args(["pack", "--silent", "--pack-destination"]).arg(files);
+    run(npm.arg(workspace.path(web::PACKAGE)))
 }
 
 /// cargo with zig as its linker, in the folder `target/portable`.
@@ -204,10 +193,9 @@ fn pack(workspace: &Workspace, files: &Path, name: &str) -> Result<()> {
 fn lists_of_parts(workspace: &Workspace, files: &Path) -> Result<()> {
     let cyclonedx = cargo_tool(workspace, "cargo-cyclonedx", "0.5.9")?;
     run(workspace.program(&cyclonedx).args(["cyclonedx", "--format", "json"]))?;
-    let crates = fs::read_dir(workspace.path("crates"))?
-        .flatten()
-        .map(|entry| entry.path());
-    for folder in crates.chain(["xtask", "tests"].map(|name| workspace.path(name))) {
+    let crates = fs::read_dir(workspace.path("crates"))?.flatten();
+    let others = ["xtask", "tests"].map(|name| workspace.path(name));
+    for folder in crates.map(|entry| entry.path()).chain(others) {
         for list in of_extension(&folder, "json")? {
             let name = list.file_name().unwrap_or_default().display().to_string();
             match name.strip_suffix(".cdx.json") {
@@ -244,21 +232,16 @@ fn publish(workspace: &Workspace, files: &Path) -> Result<()> {
     let release_plz = cargo_tool(workspace, "release-plz", "0.4.3")?;
     run(workspace.program(release_plz).arg("release"))?;
     let mut maturin = Tools::for_release(workspace)?.program(workspace, "maturin");
-    run(maturin
-        .args(["upload", "--skip-existing"])
-        .args(of_extension(files, "whl")?))?;
+    maturin.args(["upload", "--skip-existing"]);
+    run(maturin.args(of_extension(files, "whl")?))?;
     let this = format!("ddl-forecast@{VERSION}");
     let published = read(workspace.program("npm").args(["view", &this, "version"])).unwrap_or_default();
     if published.trim() != VERSION {
-        run(workspace
-            .program("npm")
-            .arg("publish")
-            .args(of_extension(files, "tgz")?))?;
+        let mut npm = workspace.program("npm");
+        run(npm.arg("publish").args(of_extension(files, "tgz")?))?;
     }
-    println!(
-        "push the tag v{VERSION}, and attach the files of {} to it",
-        files.display()
-    );
+    let files = files.display();
+    println!("push the tag v{VERSION}, and attach the files of {files} to it");
     Ok(())
 }
 

@@ -4,31 +4,26 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
 use std::path::Path;
 
+use anyhow::{Context, Result, ensure};
+
 use super::VERSION;
 
 /// A header that exists only in a libtorch with its C++ interface.
 const HEADER: &str = "include/torch/csrc/api/include/torch/torch.h";
 
 /// Checks files and version, but no hashes. The reason is a clause for a sentence.
-pub(super) fn validate(folder: &Path) -> Result<(), String> {
-    if !folder.is_dir() {
-        return Err("the folder does not exist".to_owned());
-    }
+pub(super) fn validate(folder: &Path) -> Result<()> {
+    ensure!(folder.is_dir(), "the folder does not exist");
     for library in ["torch", "torch_cpu", "c10"] {
         let file = format!("lib/{DLL_PREFIX}{library}{DLL_SUFFIX}");
-        if !folder.join(&file).exists() {
-            return Err(format!("it has no {file}"));
-        }
+        ensure!(folder.join(&file).exists(), "it has no {file}");
     }
-    if !folder.join(HEADER).is_file() {
-        return Err(format!("it has no {HEADER} (libraries without headers)"));
-    }
-    match version(folder) {
-        // A build of the same version for another backend, as in 2.11.0+cu130, has the same interface.
-        Some(found) if found.split('+').next() == Some(VERSION) => Ok(()),
-        Some(found) => Err(format!("it is libtorch {found}")),
-        None => Err("neither build-version nor version.py states its version".to_owned()),
-    }
+    let has_header = folder.join(HEADER).is_file();
+    ensure!(has_header, "it has no {HEADER} (libraries without headers)");
+    let found = version(folder).context("neither build-version nor version.py states its version")?;
+    // A build of the same version for another backend, as in 2.11.0+cu130, has the same interface.
+    ensure!(found.split('+').next() == Some(VERSION), "it is libtorch {found}");
+    Ok(())
 }
 
 /// From `build-version` (a libtorch archive) or `version.py` (PyTorch's Python package).
@@ -60,21 +55,18 @@ mod tests {
             ("build-version", VERSION, &library("torch_cpu"), "torch_cpu"),
         ] {
             let folder = tempfile::tempdir().unwrap();
-            let files = ["torch", "torch_cpu", "c10"]
-                .map(library)
-                .into_iter()
-                .chain([HEADER.to_owned()]);
-            for file in files.filter(|file| file != missing) {
+            let files = ["torch", "torch_cpu", "c10"].map(library).into_iter();
+            for file in files.chain([HEADER.to_owned()]).filter(|file| file != missing) {
                 write_file(&folder.path().join(file), b"").unwrap();
             }
             write_file(&folder.path().join(version_file), contents.as_bytes()).unwrap();
-            let message = validate(folder.path()).err().unwrap_or_default();
-            assert!(
-                message.is_empty() == reason.is_empty() && message.contains(reason),
-                "{message}"
-            );
+            let message = validate(folder.path())
+                .err()
+                .map_or_else(String::new, |error| error.to_string());
+            let is_right = message.is_empty() == reason.is_empty() && message.contains(reason);
+            assert!(is_right, "{message}");
         }
         let message = validate(Path::new("/nowhere/libtorch")).unwrap_err();
-        assert_eq!(message, "the folder does not exist");
+        assert_eq!(message.to_string(), "the folder does not exist");
     }
 }

@@ -49,10 +49,8 @@ fn a_second_fetch_uses_no_source_and_a_damaged_file_is_fetched_again() {
     assert_eq!(fetched(), "an earlier run");
     fs::write(to.path().join("one.csv"), &ONE[..5]).unwrap();
     let message = entry.check(to.path()).unwrap_err().to_string();
-    assert!(
-        message.contains("1 of 2 files") && message.contains("(one.csv)"),
-        "{message}"
-    );
+    let is_named = message.contains("1 of 2 files") && message.contains("(one.csv)");
+    assert!(is_named, "{message}");
     assert_eq!(fetched(), "source 1");
     entry.check(to.path()).unwrap();
 }
@@ -89,13 +87,8 @@ fn offline() -> (tempfile::TempDir, Workspace) {
 fn what_cannot_be_had_is_an_error_and_wrong_files_are_neither_used_nor_replaced() {
     let (folder, workspace) = offline();
     let manifest = Manifest::load(&workspace).unwrap();
-    assert!(
-        manifest
-            .entry("own")
-            .unwrap_err()
-            .to_string()
-            .contains("name one of star, social-gan")
-    );
+    let unknown = manifest.entry("own").unwrap_err().to_string();
+    assert!(unknown.contains("name one of star, social-gan"));
     let message = |place: &Path| {
         let outcome = manifest.star.obtain(&workspace, "star", Some("star"), Some(place));
         format!("{:#}", outcome.unwrap_err())

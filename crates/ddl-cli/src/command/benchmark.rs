@@ -3,8 +3,6 @@
 mod child;
 mod choice;
 mod display;
-#[cfg(test)]
-mod fixture;
 mod method;
 mod pace;
 mod plan;
@@ -124,11 +122,8 @@ impl Benchmark {
         if ends.contains(&TaskEnd::Interrupted) {
             let took = human(start.elapsed());
             let finished = plan.tasks.iter().filter(|t| Record::of(t, out).is_some());
-            let progress = format!(
-                "{} of {} tasks are finished, after {took}",
-                finished.count(),
-                ends.len()
-            );
+            let (finished, all) = (finished.count(), ends.len());
+            let progress = format!("{finished} of {all} tasks are finished, after {took}");
             return Err(anyhow::Error::new(DdlError::Interrupted).context(progress));
         }
         self.report(plan, out)?;
@@ -139,11 +134,8 @@ impl Benchmark {
     fn do_task(&self, index: usize, out: &Path) -> anyhow::Result<()> {
         let plan = Plan::read(out)?;
         let task = plan.tasks.get(index).with_context(|| {
-            format!(
-                "no task {index}: the plan of {} has {} tasks, counted from 0",
-                out.display(),
-                plan.tasks.len()
-            )
+            let (out, all) = (out.display(), plan.tasks.len());
+            format!("no task {index}: the plan of {out} has {all} tasks, counted from 0")
         })?;
         let interrupt = catch()?;
         let workers = self.workers(1, self.cores())?;

@@ -194,14 +194,14 @@ fn facts(file: &Path, summary: &Summary, recording: &Recording, clock: Clock) ->
 
 fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String> {
     let warnings = summary.warnings();
-    let fast = warnings
-        .iter()
-        .find(|warning| matches!(warning, PlausibilityWarning::Fast { .. }));
+    let is_fast = |warning: &&PlausibilityWarning| matches!(warning, PlausibilityWarning::Fast { .. });
+    let fast = warnings.iter().find(is_fast);
     let misfits = ddl::words_of_misfits(recording, clock, &summary.misfits, fast);
-    let warnings = warnings
-        .into_iter()
-        .map(|warning| ddl::words_of_warning(&ddl::in_frames(clock, warning)));
-    warnings.chain(misfits).collect()
+    let warnings = warnings.into_iter().map(|warning| ddl::in_frames(clock, warning));
+    warnings
+        .map(|warning| ddl::words_of_warning(&warning))
+        .chain(misfits)
+        .collect()
 }
 
 /// The rate of the rows of a pedestrian, its jitter, and the noise.

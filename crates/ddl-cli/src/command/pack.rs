@@ -43,10 +43,10 @@ impl Pack {
             (None, None) => Vec::new(),
         };
         if self.telling.json {
-            let files = packed
-                .iter()
-                .map(|(file, numbers)| json!({"file": file, "weights": numbers}));
-            let files: Vec<_> = files.collect();
+            let files = packed.iter();
+            let files: Vec<_> = files
+                .map(|(file, numbers)| json!({"file": file, "weights": numbers}))
+                .collect();
             return match (&self.benchmark, &files[..]) {
                 (None, [file]) => output::print_json(file),
                 _ => output::print_json(&files),

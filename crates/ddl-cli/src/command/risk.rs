@@ -90,11 +90,11 @@ impl RiskCommand {
         if headed {
             let named = lines.first().and_then(|line| line.scene).map(|_| "scene");
             let nearest = self.nearest.then_some("nearest");
-            let columns = named
-                .into_iter()
-                .chain(["observed_until", "plan", "within", "risk"])
-                .chain(nearest);
-            let columns = columns.chain(["pedestrian", "pedestrian_risk"]).map(str::to_owned);
+            let columns = named.into_iter().chain(["observed_until", "plan", "within", "risk"]);
+            let columns = columns
+                .chain(nearest)
+                .chain(["pedestrian", "pedestrian_risk"])
+                .map(str::to_owned);
             let until = (1..=HORIZON).map(|t| format!("until_{:.1}", TIME_STEP * t as f64));
             writer.write_record(columns.chain(until))?;
         }
@@ -103,19 +103,10 @@ impl RiskCommand {
             let worst = pedestrians.reduce(|worst, other| if other.risk > worst.risk { other } else { worst });
             let worst = worst.map(|worst| (&worst.pedestrian, table_share(worst.risk)));
             let nearest = Vec::from_iter(line.nearest.map(table_metres));
-            let row = (
-                line.observed_until.rounded(),
-                line.plan,
-                line.within,
-                table_share(line.risk),
-                nearest,
-            );
-            writer.serialize((
-                Vec::from_iter(line.scene),
-                row,
-                worst.unzip(),
-                line.until.map(table_share),
-            ))?;
+            let (observed_until, risk) = (line.observed_until.rounded(), table_share(line.risk));
+            let row = (observed_until, line.plan, line.within, risk, nearest);
+            let until = line.until.map(table_share);
+            writer.serialize((Vec::from_iter(line.scene), row, worst.unzip(), until))?;
         }
         let bytes = writer.into_inner().context("cannot finish the csv")?;
         Ok(String::from_utf8(bytes)?)

@@ -293,9 +293,10 @@ impl Train {
         set(&mut training.batch_pedestrians, self.batch_pedestrians);
         set(&mut training.learning_rate, self.learning_rate);
         set(&mut training.learning_rate_schedule, self.learning_rate_schedule);
-        if self.pedestrians_per_epoch.is_some() {
-            training.pedestrians_per_epoch = self.pedestrians_per_epoch;
-        }
+        set(
+            &mut training.pedestrians_per_epoch,
+            self.pedestrians_per_epoch.map(Some),
+        );
         training.seed = self.seed;
         (star, training)
     }

@@ -8,7 +8,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::{Forecast, Forecaster as _, RecordingPlayer};
 use std::io::IsTerminal as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Show forecasts of your own tracks in the browser
 ///
@@ -79,17 +79,11 @@ impl View {
         }
         output::print(&format!("{}\n", path.display()))?;
         if !self.no_open && std::io::stdout().is_terminal() {
-            open(&path)?;
+            open::that_detached(&path).with_context(|| {
+                let page = path.display();
+                format!("the page is written, but no browser could be started; open {page} yourself, or add --no-open")
+            })?;
         }
         Ok(())
     }
-}
-
-fn open(path: &Path) -> anyhow::Result<()> {
-    open::that_detached(path).with_context(|| {
-        format!(
-            "the page is written, but no browser could be started; open {} yourself, or add --no-open",
-            path.display()
-        )
-    })
 }

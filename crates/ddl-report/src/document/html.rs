@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use crate::document::parts::{Document, Part, Span, spans};
+use crate::document::parts::{Document, Part};
 use crate::document::table::Table;
 
 #[derive(Debug)]
@@ -19,9 +19,9 @@ impl Document {
         let mut contents: Vec<ContentsEntry> = Vec::new();
         let mut used: Vec<String> = Vec::new();
         let mut body = String::new();
-        for chunk in self.parts.chunk_by(|_, next| !is_section(next)) {
+        for chunk in self.parts.chunk_by(|_, next| !matches!(next, Part::Heading(_))) {
             let markup = match chunk {
-                [Part::Heading { level: 1, text }, parts @ ..] => {
+                [Part::Heading(text), parts @ ..] => {
                     let (id, heading) = (unused(identifier(text), &mut used), inline(text));
                     let warned = parts.iter().any(|part| matches!(part, Part::Warning(_)));
                     let class = warned.then_some("warned");
@@ -39,24 +39,14 @@ impl Document {
     }
 }
 
-fn is_section(part: &Part) -> bool {
-    matches!(part, Part::Heading { level: 1, .. })
-}
-
 fn all(parts: &[Part], used: &mut Vec<String>) -> Markup {
     html! { @for part in parts { (rendered(part, used)) "\n" } }
 }
 
 fn rendered(part: &Part, used: &mut Vec<String>) -> Markup {
     match part {
-        Part::Heading { level, text } => {
-            let (id, text) = (unused(identifier(text), used), inline(text));
-            match level {
-                1 => html! { h2 id=(id) { (text) } },
-                2 => html! { h3 id=(id) { (text) } },
-                _ => html! { h4 id=(id) { (text) } },
-            }
-        }
+        Part::Heading(text) => html! { h2 id=(unused(identifier(text), used)) { (inline(text)) } },
+        Part::Subheading(text) => html! { h3 id=(unused(identifier(text), used)) { (inline(text)) } },
         Part::Paragraph(text) => html! { p { (inline(text)) } },
         Part::Warning(text) => warning(text),
         Part::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
@@ -106,12 +96,13 @@ fn of_table(table: &Table) -> Markup {
 
 /// Text whose words between backticks are code.
 pub(crate) fn inline(text: &str) -> Markup {
+    let code = text
+        .split_once('`')
+        .and_then(|(before, rest)| Some((before, rest.split_once('`')?)));
     html! {
-        @for span in spans(text) {
-            @match span {
-                Span::Plain(text) => (text),
-                Span::Code(code) => code { (code) },
-            }
+        @match code {
+            Some((before, (code, after))) => { (before) code { (code) } (inline(after)) }
+            None => (text),
         }
     }
 }

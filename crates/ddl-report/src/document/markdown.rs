@@ -1,27 +1,31 @@
 //! A document as markdown.
 
-use crate::document::parts::{Document, Part, unfolded};
+use crate::document::parts::{Document, Part};
 
 impl Document {
     /// The document as markdown with pipe tables.
     pub(crate) fn to_markdown(&self) -> String {
         let head = format!("{}\n\n# {}\n", self.lead, self.title);
-        let parts = unfolded(&self.parts).map(render);
-        parts.fold(head, |page, part| page + "\n" + &part)
+        head + &all(&self.parts)
     }
 }
 
+fn all(parts: &[Part]) -> String {
+    parts.iter().map(render).collect()
+}
+
+/// The part after an empty line.
 fn render(part: &Part) -> String {
     match part {
-        Part::Heading { level, text } => format!("#{} {text}\n", "#".repeat(*level)),
-        Part::Paragraph(text) => format!("{text}\n"),
-        Part::Warning(text) => format!("> **Warning.** {text}\n"),
-        Part::List(items) => items.iter().flat_map(|item| ["- ", item, "\n"]).collect(),
-        // `unfolded` has replaced details by their parts.
-        Part::Details { .. } => String::new(),
+        Part::Heading(text) => format!("\n## {text}\n"),
+        Part::Subheading(text) => format!("\n### {text}\n"),
+        Part::Paragraph(text) => format!("\n{text}\n"),
+        Part::Warning(text) => format!("\n> **Warning.** {text}\n"),
+        Part::List(items) => format!("\n- {}\n", items.join("\n- ")),
+        Part::Details { parts, .. } => all(parts),
         Part::Table(table) => match &table.caption {
-            Some(caption) => format!("{caption}\n\n{table}"),
-            None => table.to_string(),
+            Some(caption) => format!("\n{caption}\n\n{table}"),
+            None => format!("\n{table}"),
         },
     }
 }

@@ -5,40 +5,27 @@ use crate::figure::marks::star;
 use crate::figure::pedestrian::hypothesis_style;
 
 const ENTRY: f64 = 26.0;
-const SAMPLE: f64 = 42.0;
+const WIDTH: f64 = 42.0;
 /// Space between a sample and its text, pixels.
 const GAP: f64 = 16.0;
 
 #[derive(Debug, Clone, Copy)]
-pub(super) enum LegendEntry {
+pub(super) enum Sample {
     Observed,
     Truth,
     Forecast,
-    Representative,
     OtherHypotheses,
-    Note(&'static str),
+    /// Words alone.
+    Note,
     /// Rings at the goals of hypotheses.
-    Goals(&'static str),
+    Goals,
     Region,
 }
 
-impl LegendEntry {
-    fn text(self) -> &'static str {
-        match self {
-            Self::Observed => "observed, 3.2 s",
-            Self::Truth => "truth, 4.8 s, and its end",
-            Self::Forecast => "forecast",
-            Self::Representative => "representative forecast",
-            Self::OtherHypotheses => "other hypotheses",
-            Self::Note(text) | Self::Goals(text) => text,
-            Self::Region => "90 % region at 4.8 s",
-        }
-    }
-
+impl Sample {
     fn draw(self, drawing: &mut Drawing, [left, y]: [f64; 2]) {
-        let right = left + SAMPLE;
+        let right = left + WIDTH;
         let middle = f64::midpoint(left, right);
-        drawing.text("key", [left + SAMPLE + GAP, y + 4.0], self.text());
         match self {
             Self::Observed => {
                 drawing.path("seen", &[[left, y], [right, y]]);
@@ -50,7 +37,7 @@ impl LegendEntry {
                 drawing.path("truth", &[[left, y], [right, y]]);
                 drawing.circle("truth-end", [right, y], 3.6);
             }
-            Self::Forecast | Self::Representative => {
+            Self::Forecast => {
                 drawing.path("forecast", &[[left, y], [right, y]]);
                 drawing.polygon("star", &star([right, y], 7.0));
             }
@@ -60,16 +47,17 @@ impl LegendEntry {
                     drawing.styled_path("hypothesis", &line, &hypothesis_style(share));
                 }
             }
-            Self::Note(_) => {}
-            Self::Goals(_) => drawing.circle("goal", [middle, y], 6.0),
+            Self::Note => {}
+            Self::Goals => drawing.circle("goal", [middle, y], 6.0),
             Self::Region => drawing.circle("region", [middle, y], 9.0),
         }
     }
 }
 
-pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries: &[LegendEntry]) {
-    for (row, entry) in entries.iter().enumerate() {
+pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries: &[(Sample, &str)]) {
+    for (row, (sample, words)) in entries.iter().enumerate() {
         let y = top + ENTRY * (row as f64 + 0.5);
-        entry.draw(drawing, [left, y]);
+        drawing.text("key", [left + WIDTH + GAP, y + 4.0], *words);
+        sample.draw(drawing, [left, y]);
     }
 }

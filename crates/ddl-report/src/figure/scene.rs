@@ -6,7 +6,7 @@ use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use crate::error::ReportError;
 use crate::figure::axes::{Axes, SCENE};
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
-use crate::figure::legend::{self, LegendEntry};
+use crate::figure::legend::{self, Sample};
 use crate::figure::pedestrian;
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
 
@@ -64,23 +64,26 @@ fn regions(forecast: &Forecast) -> impl Iterator<Item = Disc> {
     (0..forecast.pedestrians()).flat_map(of_one)
 }
 
-fn entries(window: &Window, forecast: &Forecast) -> Vec<LegendEntry> {
+fn entries(window: &Window, forecast: &Forecast) -> Vec<(Sample, &'static str)> {
     let several = forecast.hypotheses() > 1;
-    let mut entries = vec![LegendEntry::Observed];
+    let mut entries = vec![(Sample::Observed, "observed, 3.2 s")];
     if window.has_future() {
-        entries.push(LegendEntry::Truth);
+        entries.push((Sample::Truth, "truth, 4.8 s, and its end"));
     }
     if several {
-        let paler = LegendEntry::Note("(the paler, the less likely)");
-        entries.extend([LegendEntry::Representative, LegendEntry::OtherHypotheses, paler]);
+        entries.extend([
+            (Sample::Forecast, "representative forecast"),
+            (Sample::OtherHypotheses, "other hypotheses"),
+            (Sample::Note, "(the paler, the less likely)"),
+        ]);
     } else {
-        entries.push(LegendEntry::Forecast);
+        entries.push((Sample::Forecast, "forecast"));
     }
     if forecast.has_goals() {
-        entries.push(LegendEntry::Goals(if several { "goals" } else { "goal" }));
+        entries.push((Sample::Goals, if several { "goals" } else { "goal" }));
     }
     if regions(forecast).next().is_some() {
-        entries.push(LegendEntry::Region);
+        entries.push((Sample::Region, "90 % region at 4.8 s"));
     }
     entries
 }

@@ -15,11 +15,16 @@ pub(super) fn headline(report: &Report) -> Markup {
     };
     let subject = standing.subject();
     let [ade, fde] = standing.shared.protocol.errors();
+    let lines = standing.lines.len();
     let caption = format!(
         "{ade} and {fde} in metres, less is better; the number is {ade}. {} K: hypotheses of each pedestrian, of \
          which the best is scored. {} The tables below hold every number.",
         standing.in_words,
-        shown_of(standing.lines.len())
+        if lines > MOST_LINES {
+            format!("The first {MOST_LINES} of {lines} are drawn.")
+        } else {
+            String::new()
+        }
     );
     html! {
         @if let Some(line) = subject { (verdict(&standing, line)) }
@@ -30,14 +35,6 @@ pub(super) fn headline(report: &Report) -> Markup {
             figcaption { (inline(&caption)) }
         }
         @if let Some(line) = subject { (facts(&standing, line)) }
-    }
-}
-
-fn shown_of(lines: usize) -> String {
-    if lines > MOST_LINES {
-        format!("The first {MOST_LINES} of {lines} are drawn.")
-    } else {
-        String::new()
     }
 }
 
@@ -131,13 +128,8 @@ fn facts(standing: &Standing, subject: &StandingLine) -> Markup {
 }
 
 fn grouped(count: usize) -> String {
-    let digits = count.to_string();
-    let mut words = String::new();
-    for (index, digit) in digits.chars().enumerate() {
-        if index > 0 && (digits.len() - index).is_multiple_of(3) {
-            words.push(',');
-        }
-        words.push(digit);
+    match count {
+        0..1000 => count.to_string(),
+        _ => format!("{},{:03}", grouped(count / 1000), count % 1000),
     }
-    words
 }

@@ -5,16 +5,8 @@ use ddl_data::{COORDINATE_LIMIT, HORIZON, OBSERVED, Position};
 use crate::error::ReportError;
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
 
-/// The part of the true future that is required.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Truth {
-    /// All positions, because errors are shown.
-    Whole,
-    /// Any number of positions.
-    AsSeen,
-}
-
-pub(super) fn check(moments: &[ForecastSnapshot], truth: Truth) -> Result<(), ReportError> {
+/// Checks moments whose true futures have at least `truth` positions: [`HORIZON`] where errors are shown.
+pub(super) fn check(moments: &[ForecastSnapshot], truth: usize) -> Result<(), ReportError> {
     for (index, moment) in moments.iter().enumerate() {
         check_moment(moment, truth).map_err(|problem| ReportError::Moment {
             index,
@@ -26,7 +18,7 @@ pub(super) fn check(moments: &[ForecastSnapshot], truth: Truth) -> Result<(), Re
     Ok(())
 }
 
-fn check_moment(moment: &ForecastSnapshot, truth: Truth) -> Result<(), String> {
+fn check_moment(moment: &ForecastSnapshot, truth: usize) -> Result<(), String> {
     let count = moment.pedestrians.len();
     if count == 0 {
         return Err("no pedestrian".to_owned());
@@ -47,16 +39,17 @@ fn check_moment(moment: &ForecastSnapshot, truth: Truth) -> Result<(), String> {
     Ok(())
 }
 
-fn check_pedestrian(index: usize, pedestrian: &SnapshotPedestrian, truth: Truth) -> Result<(), String> {
+fn check_pedestrian(index: usize, pedestrian: &SnapshotPedestrian, truth: usize) -> Result<(), String> {
     if pedestrian.hypotheses.is_empty() {
         return Err("a pedestrian has no hypothesis".to_owned());
     }
     check_path(index, "observed", &pedestrian.observed, OBSERVED)?;
-    let expected = match truth {
-        Truth::Whole => HORIZON,
-        Truth::AsSeen => pedestrian.truth.len().min(HORIZON),
-    };
-    check_path(index, "truth", &pedestrian.truth, expected)?;
+    check_path(
+        index,
+        "truth",
+        &pedestrian.truth,
+        pedestrian.truth.len().clamp(truth, HORIZON),
+    )?;
     for (number, hypothesis) in pedestrian.hypotheses.iter().enumerate() {
         check_path(index, "hypotheses", &hypothesis.positions, HORIZON)?;
         check_coordinates(index, "goal", hypothesis.goal.as_slice())?;

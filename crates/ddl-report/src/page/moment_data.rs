@@ -60,16 +60,8 @@ struct PedestrianData<'a> {
 }
 
 pub(super) fn to_json(moments: &[ForecastSnapshot]) -> Result<String, ReportError> {
-    let lines = moments
-        .iter()
-        .map(|moment| serde_json::to_string(&MomentData::of(moment)));
-    let lines: Vec<String> = lines.collect::<Result<_, _>>()?;
-    Ok(format!("[{}]", lines.join(",\n")))
-}
-
-impl<'a> MomentData<'a> {
-    fn of(moment: &'a ForecastSnapshot) -> Self {
-        Self {
+    let lines = moments.iter().map(|moment| {
+        serde_json::to_string(&MomentData {
             fold: &moment.fold,
             forecaster: &moment.forecaster,
             recording: &moment.recording,
@@ -79,14 +71,17 @@ impl<'a> MomentData<'a> {
             pedestrians: moment.pedestrians.iter().map(PedestrianData::of).collect(),
             joint: moment.joint,
             groups: &moment.groups,
-        }
-    }
+        })
+    });
+    let lines: Vec<String> = lines.collect::<Result<_, _>>()?;
+    Ok(format!("[{}]", lines.join(",\n")))
 }
 
 impl<'a> PedestrianData<'a> {
     fn of(pedestrian: &'a SnapshotPedestrian) -> Self {
         let last = pedestrian.observed[OBSERVED - 1];
         let hypotheses = &pedestrian.hypotheses;
+        let letter = |verdict: Option<bool>| verdict.map_or('-', |yes| if yes { 'y' } else { 'n' });
         let letters =
             |verdict: fn(&SnapshotHypothesis) -> Option<bool>| hypotheses.iter().map(verdict).map(letter).collect();
         Self {
@@ -112,10 +107,6 @@ impl<'a> PedestrianData<'a> {
             quality: pedestrian.quality,
         }
     }
-}
-
-fn letter(verdict: Option<bool>) -> char {
-    verdict.map_or('-', |yes| if yes { 'y' } else { 'n' })
 }
 
 fn steps(from: Position, path: &[Position]) -> Vec<i64> {

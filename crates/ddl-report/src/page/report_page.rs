@@ -1,13 +1,13 @@
 //! The HTML page of a report.
 
+use ddl_data::HORIZON;
 use maud::{Markup, html};
 
 use crate::document::{ContentsEntry, inline};
 use crate::error::ReportError;
 use crate::page::headline_chart::{ChartShape, headline_chart};
-use crate::page::moment_check::{self, Truth};
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
-use crate::page::{headline, moment_data, standing};
+use crate::page::{headline, moment_check, moment_data, standing};
 use crate::report::Report;
 use crate::snapshot::ForecastSnapshot;
 
@@ -91,6 +91,6 @@ impl<'a> Page<'a> {
     }
 
     fn check(&self) -> Result<(), ReportError> {
-        moment_check::check(self.moments, Truth::Whole)
+        moment_check::check(self.moments, HORIZON)
     }
 }

@@ -71,8 +71,8 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
     let group = groups.iter().min_by_key(rank)?;
     let measured = |fold: &&str| !group.pedestrians(fold).is_empty();
     let folds: Vec<&str> = group.folds().into_iter().filter(measured).collect();
-    let mut lines: Vec<StandingLine> = group
-        .labelled()
+    let lines = group.labelled();
+    let mut lines: Vec<_> = lines
         .map(|(line, label)| StandingLine::of(line, label, &folds))
         .collect();
     // Lines without a mean come last; the sort is stable.

@@ -3,9 +3,8 @@
 use maud::html;
 
 use crate::error::ReportError;
-use crate::page::moment_check::{self, Truth};
-use crate::page::moment_data;
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
+use crate::page::{moment_check, moment_data};
 use crate::snapshot::ForecastSnapshot;
 
 /// Content of a page that plays forecasts of own tracks: one file, which needs no network and no other file.
@@ -27,7 +26,7 @@ impl Viewer<'_> {
     /// # Errors
     /// A moment is incomplete; the error names it.
     pub fn to_html(&self) -> Result<String, ReportError> {
-        moment_check::check(self.moments, Truth::AsSeen)?;
+        moment_check::check(self.moments, 0)?;
         let moments = moment_data::to_json(self.moments)?;
         let body = html! {
             body.viewer data-first="busiest" {

@@ -55,11 +55,8 @@ fn has_ablated_variant(group: &ResultGroup<'_>) -> bool {
 
 fn alike(group: &ResultGroup<'_>) -> bool {
     let made = |line: &TableLine<'_>| {
-        let rows = line
-            .rows
-            .iter()
-            .map(|row| (row.conditions.fold.clone(), row.conditions.seed));
-        let mut rows: Vec<_> = rows.collect();
+        let rows = line.rows.iter().map(|row| &row.conditions);
+        let mut rows: Vec<_> = rows.map(|row| (row.fold.clone(), row.seed)).collect();
         rows.sort_unstable();
         let conditions = Conditions {
             variant: None,

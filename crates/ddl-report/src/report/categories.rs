@@ -8,11 +8,6 @@ use crate::document::{Part, Table};
 use crate::report::cells::{counts, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
 
-pub(super) const LEGEND: &str = "By kind of motion: minADE/minFDE in metres (under `joint` JADE/JFDE: the errors in \
-    the future that is best for the whole scene), mean over the pedestrians of the folds named, which all forecasters \
-    of the table have (not over the folds, some of which hold few pedestrians of a kind). The kinds are computed from \
-    the true future, after the forecasts are made.";
-
 /// One table with a line for each kind of motion and a column for each forecaster. Empty if no row has scores by kind,
 /// or if the forecasters share no fold.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {

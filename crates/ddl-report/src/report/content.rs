@@ -5,7 +5,10 @@ use ddl_eval::{Protocol, ResultRow};
 
 use crate::document::{Document, Part};
 use crate::report::group::{ResultGroup, groups};
-use crate::report::{ablation, across_protocols, categories, deployable, metrics, published, section, significance};
+use crate::report::{ablation, across_protocols, deployable, metrics, published, section};
+
+/// What the columns of every group mean, by table.
+const LEGENDS: &str = include_str!("how_to_read.txt");
 
 pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     let groups = groups(rows);
@@ -13,14 +16,9 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     if !groups.is_empty() {
         parts.push(Part::heading("How to read the tables"));
         let scenes = groups.iter().any(|group| group.protocol == Protocol::Joint);
-        let legends = [
-            metrics::FURTHER_LEGEND,
-            metrics::WHOLE_LEGEND,
-            significance::LEGEND,
-            categories::LEGEND,
-        ];
-        let legends = legends.into_iter().chain(scenes.then_some(metrics::JOINT_LEGEND));
-        parts.push(Part::List(legends.map(str::to_owned).collect()));
+        let legends = LEGENDS.trim_end().split("\n\n");
+        let legends = legends.chain(scenes.then_some(metrics::JOINT_LEGEND));
+        parts.push(Part::List(legends.map(|legend| legend.replace('\n', " ")).collect()));
     }
     parts.extend(deployable::parts(&groups));
     parts.extend(across_protocols::parts(&groups));
@@ -36,10 +34,9 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
 fn first_line(groups: &[ResultGroup<'_>]) -> String {
     let mut conventions: Vec<Convention> = groups.iter().map(|group| group.convention).collect();
     conventions.dedup();
-    let described: Vec<String> = conventions
-        .iter()
-        .map(|convention| format!("`{convention}` ({})", describe_convention(*convention)))
-        .collect();
+    let described = conventions.into_iter();
+    let described = described.map(|one| format!("`{one}` ({})", describe_convention(one)));
+    let described: Vec<String> = described.collect();
     match described.as_slice() {
         [] => "Data convention: none, this report holds no results.".to_owned(),
         [one] => format!("Data convention: {one}."),

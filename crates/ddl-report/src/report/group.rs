@@ -43,11 +43,9 @@ pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
     }
     groups.sort_by_key(|group| {
         let convention = Convention::ALL.iter().position(|c| *c == group.convention);
-        let rule = (
-            group.window_rule != WindowRule::Published,
-            group.window_rule.to_string(),
-        );
-        (convention, rule, order(group.protocol), group.test_subset)
+        let (rule, protocol) = (group.window_rule, order(group.protocol));
+        let other_rule = (rule != WindowRule::Published, rule.to_string());
+        (convention, other_rule, protocol, group.test_subset)
     });
     groups
 }
@@ -245,10 +243,7 @@ impl<'a> TableLine<'a> {
     }
 
     pub(crate) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
-        folds
-            .iter()
-            .copied()
-            .filter(|fold| self.on(fold).next().is_some())
-            .collect()
+        let folds = folds.iter().copied();
+        folds.filter(|fold| self.on(fold).next().is_some()).collect()
     }
 }

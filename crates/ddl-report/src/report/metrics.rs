@@ -9,14 +9,6 @@ use crate::report::group::{ResultGroup, TableLine};
 /// A metric of the further tables: name of its column, decimals, value.
 type MetricColumn = (&'static str, usize, fn(&Scores) -> Option<f64>);
 
-pub(super) const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the hypothesis \
-    of least ADE; missed: every hypothesis ends more than 0.5 m \
-    off; collide: discs of radius 0.2 m overlap between the forecasts of protocol `single` (in brackets: between true \
-    futures); goal FDE: distance of the nearest goal from the true end; Phi falls: rollouts that come nearer to their \
-    goal at every step; certified: rollouts whose Lyapunov certificate holds, the model's step-by-step evidence; to \
-    goal: distance left at the end; turn: largest angle between a step and the goal direction; reverse: rollouts that \
-    turn by more than 90 degrees; K: hypotheses of each pedestrian.";
-
 const FURTHER: [MetricColumn; 11] = [
     ("FDE@minADE m", 3, |s| Some(s.fde_at_min_ade)),
     ("missed %", 1, |s| Some(100.0 * s.miss_rate)),
@@ -56,16 +48,6 @@ const JOINT: [MetricColumn; 10] = [
 fn percent(scores: &Scores, share: fn(JointScores) -> f64) -> Option<f64> {
     scores.joint.map(|joint| 100.0 * share(joint))
 }
-
-pub(super) const WHOLE_LEGEND: &str = "The forecast as a whole, mean over the folds named. ADE@minFDE: ADE of the \
-    hypothesis of least FDE; expected: weighted mean error of all hypotheses; likely: error of the hypothesis of \
-    greatest weight; missed 1 m, 2 m: every hypothesis ends farther off; runs into: forecasts of protocol `single` \
-    that overlap the TRUE future of another pedestrian (Col-II; discs of radius 0.2 m); KDE NLL: negative \
-    log-likelihood of the truth under a kernel density of the weighted hypotheses, or the mixture of Student's t of a \
-    forecast with a spread, clipped at 20 nats; AMD: \
-    Mahalanobis distance of the truth from the distribution of the hypotheses; AMV: largest eigenvalue of their mean \
-    covariance; APD, FPD: mean distance between two hypotheses, over the path and at the endpoints. These metrics need \
-    several hypotheses and depend on their number.";
 
 /// Metrics of the forecast as a whole: of all hypotheses with their weights, not of the best one.
 const WHOLE: [MetricColumn; 13] = [

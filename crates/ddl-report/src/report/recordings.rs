@@ -13,11 +13,8 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         return Vec::new();
     }
     let folds = group.folds();
-    let tables: Vec<Part> = folds
-        .iter()
-        .filter_map(|fold| table(group, fold))
-        .map(Part::Table)
-        .collect();
+    let tables = folds.iter().filter_map(|fold| table(group, fold));
+    let tables: Vec<Part> = tables.map(Part::Table).collect();
     if tables.is_empty() {
         return Vec::new();
     }
@@ -52,10 +49,8 @@ fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
         let start = [recording.clone(), pedestrians.to_string()];
         table.row(start.into_iter().chain(errors));
     }
-    let errors = measured
-        .iter()
-        .map(|(_, row, _)| row.scores.errors(group.protocol).map(|error| Some(rounded(error))))
-        .map(|[ade, fde]| pair(ade, fde));
+    let errors = measured.iter().map(|(_, row, _)| row.scores.errors(group.protocol));
+    let errors = errors.map(|[ade, fde]| pair(Some(rounded(ade)), Some(rounded(fde))));
     let start = ["all".to_owned(), first.scores.pedestrians.to_string()];
     table.row(start.into_iter().chain(errors));
     Some(table.captioned(format!(

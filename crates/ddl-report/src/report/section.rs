@@ -82,8 +82,8 @@ fn conditions(group: &ResultGroup<'_>) -> Vec<String> {
             None => alike.push((settings, vec![label])),
         }
     }
-    alike
-        .iter()
+    let lines = alike.iter();
+    lines
         .map(|(settings, labels)| format!("{}: {settings}.", labels.join(", ")))
         .collect()
 }

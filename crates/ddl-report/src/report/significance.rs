@@ -7,14 +7,6 @@ use crate::document::{Part, Table};
 use crate::report::cells::{self, NOTHING, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
 
-pub(super) const LEGEND: &str = "How sure the means are: the brackets give the 95 % interval over 10,000 resamples of \
-    20 s of recording (windows overlap and are not independent samples). p is the probability that chance alone makes \
-    as large a difference from the forecaster in the head of the column: the sign of the difference of every 20 s is \
-    changed at random. It is cautious where the folds disagree, and not corrected for the number of comparisons. \
-    Intervals need at least 10 such stretches in every fold. Seeds are averaged first; their spread is the ± of the \
-    first table, not part of the intervals. The intervals hold for other moments in the same places; for other places, \
-    compare the folds.";
-
 type BlockMetric = fn(&BlockErrors) -> f64;
 
 /// The errors of the protocol, summed over a block.
@@ -53,7 +45,8 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
             let mut cells = vec![label.clone(), cells::folds(&measured.names(), &folds)];
             cells.extend(measured.intervals());
             for metric in METRICS {
-                cells.extend(difference(measured, reference, metric));
+                let difference = difference(measured, reference, metric);
+                cells.extend(difference.unwrap_or([NOTHING; 2].map(str::to_owned)));
             }
             cells
         })
@@ -85,12 +78,9 @@ struct MeasuredLine<'a> {
 impl<'a> MeasuredLine<'a> {
     /// `None` if a row has no errors by block.
     fn of(line: &'a TableLine<'a>, folds: &[&str]) -> Option<Self> {
-        let present = line.present(folds);
-        let folds: Option<Vec<_>> = present
-            .iter()
-            .map(|&fold| Some((fold.to_owned(), line.blocks(fold)?)))
-            .collect();
-        let folds = folds.filter(|folds| !folds.is_empty())?;
+        let present = line.present(folds).into_iter();
+        let folds = present.map(|fold| Some((fold.to_owned(), line.blocks(fold)?)));
+        let folds = folds.collect::<Option<Vec<_>>>().filter(|folds| !folds.is_empty())?;
         Some(Self { line, folds })
     }
 
@@ -107,24 +97,19 @@ impl<'a> MeasuredLine<'a> {
     }
 }
 
-/// The difference and its p-value as two cells; `-` if folds or windows differ, or if the lines are the same.
-fn difference(measured: &MeasuredLine<'_>, reference: &MeasuredLine<'_>, metric: BlockMetric) -> [String; 2] {
-    let nothing = || [NOTHING.to_owned(), NOTHING.to_owned()];
+/// The difference and its p-value; `None` if folds or windows differ, or if the lines are the same.
+fn difference(measured: &MeasuredLine<'_>, reference: &MeasuredLine<'_>, metric: BlockMetric) -> Option<[String; 2]> {
     if std::ptr::eq(measured.line, reference.line) || measured.names() != reference.names() {
-        return nothing();
+        return None;
     }
-    match paired_difference(&measured.slices(), &reference.slices(), metric) {
-        Some(pair) => {
-            let p = match pair.p_value {
-                small if small < 1e-3 => "<0.001".to_owned(),
-                p => format!("{p:.3}"),
-            };
-            let Interval { mean, low, high } = pair.difference;
-            let [mean, low, high] = [mean, low, high].map(signed);
-            [format!("{mean} [{low}, {high}]"), p]
-        }
-        None => nothing(),
-    }
+    let pair = paired_difference(&measured.slices(), &reference.slices(), metric)?;
+    let p = match pair.p_value {
+        small if small < 1e-3 => "<0.001".to_owned(),
+        p => format!("{p:.3}"),
+    };
+    let Interval { mean, low, high } = pair.difference;
+    let [mean, low, high] = [mean, low, high].map(signed);
+    Some([format!("{mean} [{low}, {high}]"), p])
 }
 
 /// With its sign, unless it rounds to 0.

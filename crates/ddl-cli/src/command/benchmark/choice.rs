@@ -174,4 +174,4 @@ fn one_of(what: &str, name: &str, names: &[&str]) -> anyhow::Result<usize> {
 
 #[cfg(test)]
 #[path = "choice_tests.rs"]
-mod tests;
+pub(super) mod tests;

@@ -14,8 +14,8 @@ fn parsed(words: &str) -> PlanOptions {
     Line::try_parse_from(words).unwrap().choice
 }
 
-fn plan_of(words: &str) -> anyhow::Result<Plan> {
-    parsed(words).plan_of(Convention::Star, None)
+pub(in super::super) fn plan_of(words: &str) -> anyhow::Result<Plan> {
+    parsed(words).plan_of(Convention::Star, Some("/recordings".into()))
 }
 
 /// Folder, tasks and scored pedestrians of a plan, and how it trains.
@@ -24,7 +24,7 @@ fn planned(words: &str) -> String {
     let out = usual_folder(&plan);
     let out = out.strip_prefix("runs").unwrap();
     let train = plan.train_arguments(&plan.tasks[0], Path::new(""), 1);
-    let (_, train) = train.split_at(9); // convention, fold, variant and seed
+    let (_, train) = train.split_at(11); // convention, data, fold, variant and seed
     let end = train.iter().position(|word| word == "--out").unwrap();
     let scored = plan.settings.test_pedestrians;
     let scored = scored.map_or("all".to_owned(), |n| n.to_string());

@@ -94,17 +94,23 @@ impl ProgramArguments {
 }
 
 impl Plan {
-    pub(crate) fn new(settings: Settings, folds: &[String], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Self> {
+    pub(crate) fn new(
+        settings: Settings,
+        folds: &[impl ToString],
+        methods: &[Method],
+        seeds: &[u64],
+    ) -> anyhow::Result<Self> {
         let mut tasks: Vec<Task> = Vec::new();
         // The tasks of the first method come first, because the others use the goals that they train.
         for &variant in methods {
             for fold in folds {
                 for &seed in seeds {
+                    let fold = fold.to_string();
                     let id = format!("{fold}-{}-{seed}", variant.name());
                     ensure!(tasks.iter().all(|task| task.id != id), "the options ask for {id} twice");
                     tasks.push(Task {
                         id,
-                        fold: fold.clone(),
+                        fold,
                         variant,
                         seed,
                     });
@@ -137,6 +143,8 @@ impl Plan {
     pub(super) fn train_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let settings = &self.settings;
         let optimiser = settings.recipe.optimiser.as_ref();
+        let batch = optimiser.map(|optimiser| optimiser.batch_pedestrians);
+        let schedule = optimiser.map(|optimiser| optimiser.schedule);
         let words = ProgramArguments::of("train")
             .option("--convention", Some(settings.convention))
             .option("--data", settings.data.as_ref().map(|data| data.display()))
@@ -147,15 +155,9 @@ impl Plan {
             .option("--train-pedestrians", settings.train_pedestrians)
             .option("--proposal-steps", settings.proposal_steps)
             .option("--recipe", Some(settings.recipe.name))
-            .option(
-                "--batch-pedestrians",
-                optimiser.map(|optimiser| optimiser.batch_pedestrians),
-            )
+            .option("--batch-pedestrians", batch)
             .option("--learning-rate", optimiser.map(|optimiser| optimiser.learning_rate))
-            .option(
-                "--learning-rate-schedule",
-                optimiser.map(|optimiser| optimiser.schedule),
-            )
+            .option("--learning-rate-schedule", schedule)
             .path("--out", &task.run_folder(out));
         self.on_machine(words, threads).option("--progress", Some("json")).0
     }

@@ -1,20 +1,22 @@
 //! Tests of the plan and its file.
 
-use super::super::fixture::{plan, settings};
+use super::super::choice::tests::plan_of;
 use super::*;
 
-fn published(folds: &[&str], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Plan> {
-    plan(settings(Recipe::Published), folds, methods, seeds)
+fn published(words: &str) -> Plan {
+    plan_of(&format!(
+        "--profile paper --protocol published,fair,single --epochs 4 {words}"
+    ))
+    .unwrap()
 }
 
 fn of_eth() -> Plan {
-    published(&["eth"], &[Method::FULL], &[7]).unwrap()
+    published("--folds eth --seeds 7")
 }
 
 #[test]
 fn every_combination_is_there_once_and_the_first_method_comes_first() {
-    let methods = [Method::FULL, Method::ALL[3]];
-    let plan = published(&["eth", "univ", "zara2"], &methods, &[1, 2]).unwrap();
+    let plan = published("--folds eth,univ,zara2 --variants full,star --seeds 1,2");
     assert_eq!(plan.tasks.len(), 12);
     // The tasks of the first method come first: the others use their goals.
     for of_method in plan.tasks.chunks(6) {
@@ -26,9 +28,8 @@ fn every_combination_is_there_once_and_the_first_method_comes_first() {
     assert_eq!(same_goals(&plan.tasks[6]), Some("eth-full-1"));
     let ids: Vec<&str> = plan.tasks[..4].iter().map(|task| task.id.as_str()).collect();
     assert_eq!(ids, ["eth-full-1", "eth-full-2", "univ-full-1", "univ-full-2"]);
-    let twice = published(&["eth", "eth"], &[Method::FULL], &[1]);
-    let message = twice.unwrap_err().to_string();
-    assert_eq!(message, "the options ask for eth-full-1 twice");
+    let twice = plan_of("--folds eth,eth").unwrap_err().to_string();
+    assert_eq!(twice, "the options ask for eth-full-1 twice");
 }
 
 #[test]
@@ -36,6 +37,8 @@ fn a_task_becomes_arguments_of_the_program() {
     let out = Path::new("runs/x");
     let train = |plan: &Plan| plan.train_arguments(&plan.tasks[0], out, 1).join(" ");
     let mut plan = of_eth();
+    plan.settings.train_pedestrians = Some(800);
+    plan.settings.proposal_steps = Some(30);
     assert_eq!(
         train(&plan),
         "train --convention star --data /recordings --fold eth --variant full --seed 7 \
@@ -50,17 +53,17 @@ fn a_task_becomes_arguments_of_the_program() {
         "evaluate --model runs/x/eth-full-7/run --protocol published --protocol fair \
          --protocol single --test-pedestrians 9 --device cpu --threads 2 --progress json"
     );
-    let words = train(&published(&["eth"], &[Method::PERCEPTRON], &[7]).unwrap());
+    let words = train(&published("--folds eth --variants perceptron"));
     assert!(words.contains("--fold eth --backbone perceptron --seed"), "{words}");
 }
 
 #[test]
 fn a_plan_survives_its_file_and_may_gain_tasks() {
     let folder = tempfile::tempdir().unwrap();
-    let one = published(&["eth"], &Method::ALL, &[1]).unwrap();
+    let one = published("--folds eth --variants all");
     one.write(folder.path()).unwrap();
     assert_eq!(Plan::read(folder.path()).unwrap(), one);
-    let mut two = published(&["eth", "hotel"], &[Method::FULL], &[1]).unwrap();
+    let mut two = published("--folds eth,hotel");
     two.settings.data = Some(PathBuf::from("/moved"));
     two.write(folder.path()).unwrap();
     let message = Plan::read(&folder.path().join("none")).unwrap_err().to_string();

@@ -5,7 +5,7 @@ use crate::command::benchmark::plan::{Plan, Task};
 use crate::command::benchmark::record::Record;
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
-use anyhow::Context as _;
+use anyhow::{Context as _, anyhow, ensure};
 use ddl::data::remove_temporary_files;
 use ddl::{DeviceChoice, RunDirectory};
 use std::cell::Cell;
@@ -103,58 +103,40 @@ impl Workers {
             return TaskEnd::Kept;
         }
         watch(task, Event::Started);
-        let mut log = match open_log(&task.folder(out)) {
-            Ok(log) => log,
-            Err(error) => return failure(task, out, &format!("{error:#}")),
-        };
+        let end = self.train_and_score(plan, task, out, watch, interrupt);
+        end.unwrap_or_else(|error| failure(task, out, &format!("{error:#}")))
+    }
+
+    fn train_and_score(
+        &self,
+        plan: &Plan,
+        task: &Task,
+        out: &Path,
+        watch: Watcher<'_>,
+        interrupt: &Interrupt,
+    ) -> anyhow::Result<TaskEnd> {
+        let mut log = open_log(&task.folder(out))?;
         // Processes of an earlier benchmark that was killed may still run; they end by themselves.
         while is_held(&log) {
             if interrupt.wishes() > 0 {
-                return TaskEnd::Interrupted;
+                return Ok(TaskEnd::Interrupted);
             }
             let waits = "waits for a process of an earlier benchmark";
             watch(task, Event::Advanced(0.0, waits));
             thread::sleep(BEAT);
         }
         if Record::of(task, out).is_some() {
-            return TaskEnd::Kept;
+            return Ok(TaskEnd::Kept);
         }
         // No other process writes there now; the program itself cleans the folder of the run.
         remove_temporary_files(&task.folder(out));
         let start = Instant::now();
-        if let Some(other) = plan
-            .with_same_goals(task)
-            .filter(|task| Record::of(task, out).is_some())
-        {
+        let other = plan.with_same_goals(task);
+        if let Some(other) = other.filter(|task| Record::of(task, out).is_some()) {
             let (here, there) = (task.run_folder(out), other.run_folder(out));
-            if let Err(error) = RunDirectory::new(here).copy_goals_from(&RunDirectory::new(there)) {
-                return failure(task, out, &error.to_string());
-            }
+            let copied = RunDirectory::new(here).copy_goals_from(&RunDirectory::new(there));
+            copied.map_err(|error| anyhow!("{error}"))?;
         }
-        if let Some(end) = self.run_steps(plan, task, out, &mut log, watch, interrupt) {
-            return end;
-        }
-        let seconds = start.elapsed().as_secs_f64();
-        match Record::write(task, out, seconds) {
-            Ok(()) => TaskEnd::Finished { seconds },
-            Err(error) => failure(task, out, &format!("{error:#}")),
-        }
-    }
-
-    /// Trains and scores; `None` after success.
-    fn run_steps(
-        &self,
-        plan: &Plan,
-        task: &Task,
-        out: &Path,
-        log: &mut File,
-        watch: Watcher<'_>,
-        interrupt: &Interrupt,
-    ) -> Option<TaskEnd> {
-        let steps = [
-            plan.train_arguments(task, out, self.threads),
-            plan.evaluate_arguments(task, out, self.threads),
-        ];
         let pace = plan.pace(task);
         // The progress of a task never decreases.
         let reached = Cell::new(0.0_f64);
@@ -162,22 +144,21 @@ impl Workers {
             reached.set(reached.get().max(pace.at(stage, fraction)));
             watch(task, Event::Advanced(reached.get(), &format!("{stage} {message}")));
         };
-        for arguments in steps {
-            match self.run_step(log, &arguments, interrupt, &tell) {
-                Ok(status) if status.success() => {}
-                // A process that was asked to stop has saved its state and ended.
-                _ if interrupt.wishes() > 0 => return Some(TaskEnd::Interrupted),
-                Ok(status) => {
-                    let step = arguments.first().map_or("", String::as_str);
-                    return Some(failure(task, out, &format!("`ddl {step}` ended with {status}")));
-                }
-                Err(error) => return Some(failure(task, out, &format!("{error:#}"))),
-            }
+        for arguments in [
+            plan.train_arguments(task, out, self.threads),
+            plan.evaluate_arguments(task, out, self.threads),
+        ] {
+            let ended = self.run_step(&mut log, &arguments, interrupt, &tell);
+            // A process that was asked to stop has saved its state and ended.
             if interrupt.wishes() > 0 {
-                return Some(TaskEnd::Interrupted);
+                return Ok(TaskEnd::Interrupted);
             }
+            let status = ended?;
+            ensure!(status.success(), "`ddl {}` ended with {status}", arguments[0]);
         }
-        None
+        let seconds = start.elapsed().as_secs_f64();
+        Record::write(task, out, seconds)?;
+        Ok(TaskEnd::Finished { seconds })
     }
 
     /// Runs the program once. Its standard error goes to the log of the task. With the open file it holds the lock of

@@ -1,11 +1,9 @@
 //! The workers with a stand-in for `ddl`: a shell script with the same options, output and exit codes.
 #![cfg(unix)]
 
-use super::super::fixture;
+use super::super::choice::tests::plan_of;
 use super::super::method::Method;
-use super::super::plan::Settings;
 use super::*;
-use crate::command::recipe::Recipe;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -47,12 +45,8 @@ impl Bench {
 }
 
 fn plan(folds: &[&str]) -> Plan {
-    let settings = Settings {
-        epochs: 20,
-        train_pedestrians: None,
-        ..fixture::settings(Recipe::Recommended)
-    };
-    fixture::plan(settings, folds, &[Method::FULL], &[1]).unwrap()
+    let settings = plan_of("--epochs 20").unwrap().settings;
+    Plan::new(settings, folds, &[Method::FULL], &[1]).unwrap()
 }
 
 fn finished(ends: &[TaskEnd]) -> usize {

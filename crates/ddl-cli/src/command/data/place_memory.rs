@@ -5,7 +5,7 @@ use crate::telling::many;
 use anyhow::bail;
 use clap::Args;
 use ddl::data::Position;
-use ddl::memory::{MemorySummary, SceneMemory};
+use ddl::memory::SceneMemory;
 use ddl::report::figure;
 use serde_json::{Value, json};
 use std::fmt::{Display, Formatter};
@@ -49,24 +49,16 @@ pub(super) fn read_each(files: Vec<PathBuf>) -> (Vec<MemoryOfFile>, Vec<anyhow::
 
 impl MemoryOfFile {
     pub(super) fn facts(&self) -> Value {
-        let MemorySummary {
-            segments,
-            tracks,
-            pedestrians,
-            frames,
-            seconds,
-            extent,
-            ..
-        } = self.memory.summary();
-        let [low, high] = extent.map_or([None; 2], |corners| corners.map(Some));
+        let summary = self.memory.summary();
+        let [low, high] = summary.extent.map_or([None; 2], |corners| corners.map(Some));
         json!({
             "file": self.file.display().to_string(),
-            "stretches": segments,
+            "stretches": summary.segments,
             "capacity": self.memory.capacity(),
-            "tracks": tracks,
-            "pedestrians": pedestrians,
-            "frames": frames,
-            "seconds": seconds,
+            "tracks": summary.tracks,
+            "pedestrians": summary.pedestrians,
+            "frames": summary.frames,
+            "seconds": summary.seconds,
             "frame_step": self.memory.frame_step(),
             "low": low,
             "high": high,
@@ -118,12 +110,9 @@ impl MemoryPicture {
         };
         let [MemoryOfFile { file, memory }] = memories else {
             bail!(
-                "--svg draws the memory of one place, but {} given; give one file that `ddl forecast - --memory FILE` \
-                 wrote",
-                match memories.len() {
-                    0 => "0 were".to_owned(),
-                    count => format!("{count} were"),
-                }
+                "--svg draws the memory of one place, but {} were given; give one file that `ddl forecast - --memory \
+                 FILE` wrote",
+                memories.len()
             );
         };
         let tracks: Vec<Vec<Position>> = memory.tracks().collect();

@@ -4,7 +4,7 @@ use crate::command::RecordingsAt;
 use crate::command::test_windows::{TestWindows, ensure_scene_of_star};
 use anyhow::Context as _;
 use clap::Args;
-use ddl::data::{Convention, WindowRule};
+use ddl::data::Convention;
 use ddl::eval::Conditions;
 use ddl::eval::external::{self, Coverage, ExternalFormat};
 use ddl::report::{Report, gallery};
@@ -78,7 +78,13 @@ impl OtherProgram {
         } else {
             external::read(file, ExternalFormat::of_file(file), &windows, coverage)
         };
-        let matched = matched.map_err(|error| named(error, &(convention, &fold, rule)))?;
+        let matched = matched.map_err(|error| match error {
+            external::ExternalError::Missing { .. } | external::ExternalError::Unknown { .. } => anyhow::anyhow!(
+                "{error} (windows of --convention {convention} --fold {fold}, rule {rule}; --intersection scores only \
+                 the pedestrians in both)"
+            ),
+            error => error.into(),
+        })?;
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let name = self.name.as_deref().unwrap_or(&stem);
         let mut rows = Vec::new();
@@ -97,24 +103,5 @@ impl OtherProgram {
                 .with_context(|| format!("cannot write to {}", folder.display()))?;
         }
         Ok(report)
-    }
-}
-
-/// Adds to an error about missing pedestrians the windows used and the option that scores the common ones.
-fn named(
-    error: external::ExternalError,
-    (convention, fold, rule): &(Convention, &String, WindowRule),
-) -> anyhow::Error {
-    let differ = matches!(
-        error,
-        external::ExternalError::Missing { .. } | external::ExternalError::Unknown { .. }
-    );
-    if differ {
-        anyhow::anyhow!(
-            "{error} (windows of --convention {convention} --fold {fold}, rule {rule}; --intersection scores only the \
-             pedestrians in both)"
-        )
-    } else {
-        error.into()
     }
 }

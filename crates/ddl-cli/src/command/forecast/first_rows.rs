@@ -58,10 +58,8 @@ impl FirstRows {
                 of_scene.rows.push(Observation::new(tick, id, position));
             }
         }
-        let steps = of_scene
-            .rows
-            .first()
-            .map_or(0, |first| (tick - first.frame) / of_scene.frame_step);
+        let first = of_scene.rows.first();
+        let steps = first.map_or(0, |first| (tick - first.frame) / of_scene.frame_step);
         let rows = of_scene.rows.len();
         if (rows >= ENOUGH_ROWS && steps >= ENOUGH_STEPS) || rows >= MOST_ROWS {
             self.is_told |= of_scene.warn();

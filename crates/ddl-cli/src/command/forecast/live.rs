@@ -304,10 +304,8 @@ impl Stream<'_> {
         let is_watched = self.first_rows.watches(&scene);
         let pedestrians = is_watched.then(|| frame.pedestrians.clone());
         let observed = watching.observe(frame, self.model);
-        let tracks = watching
-            .scenes
-            .as_ref()
-            .and_then(|scenes| scenes.tracks(scene.as_ref()));
+        let scenes = watching.scenes.as_ref();
+        let tracks = scenes.and_then(|scenes| scenes.tracks(scene.as_ref()));
         if let (true, Some(tracks)) = (observed.is_ok(), tracks) {
             if let Some(pedestrians) = pedestrians {
                 self.first_rows.add(&scene, tracks, &pedestrians);

@@ -116,12 +116,7 @@ pub(super) fn compare_with_builtin(
 }
 
 fn compared_words(compared: &Comparison) -> String {
-    let Comparison {
-        pedestrians,
-        run,
-        other,
-        ..
-    } = compared;
+    let Comparison { run, other, .. } = compared;
     let builtin = BuiltinModel::default();
     let known = if compared.other_knows_them {
         format!(
@@ -132,8 +127,9 @@ fn compared_words(compared: &Comparison) -> String {
         String::new()
     };
     format!(
-        "on the validation part ({pedestrians} pedestrian-windows), minADE/minFDE of 20 in metres: this model \
-         {:.3}/{:.3}, the built-in model {builtin} {:.3}/{:.3}{known}\n{}",
+        "on the validation part ({} pedestrian-windows), minADE/minFDE of 20 in metres: this model {:.3}/{:.3}, the \
+         built-in model {builtin} {:.3}/{:.3}{known}\n{}",
+        compared.pedestrians,
         run.min_ade,
         run.min_fde,
         other.min_ade,
