@@ -59,8 +59,10 @@ fn a_signal_ends_a_command_quietly() {
         processes::signal(child.id(), if round % 2 == 0 { "TERM" } else { "INT" });
         let output = child.wait_with_output().unwrap();
         let stderr = String::from_utf8(output.stderr).unwrap();
-        assert!(stderr.lines().all(|line| line.starts_with("note: ")), "{stderr}");
-        let by_signal = output.status.signal().is_some();
+        // Between two parts of its forecasts the program ends by itself, and says so.
+        let quiet = |line: &str| line.starts_with("note: ") || line.starts_with("ddl: interrupted");
+        assert!(stderr.lines().all(quiet), "{stderr}");
+        let by_signal = output.status.signal().is_some() || output.status.code() == Some(130);
         assert!(by_signal || output.status.success(), "{:?}", output.status);
         assert!(place.read("out.csv") == expected);
         ended += usize::from(by_signal);
