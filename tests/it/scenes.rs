@@ -113,8 +113,8 @@ fn risk_is_high_where_people_walk() {
     assert_eq!(streamed.succeeds().lines().last(), csv.lines().last());
 }
 
-/// Monte Carlo on what `forecast` prints: everybody deviates from its path for the whole future, by its scale times a
-/// draw of Student's t with 3 degrees of freedom.
+/// Monte Carlo on what `forecast` prints: each pedestrian deviates from its path for the whole future, by its scale
+/// times a draw of Student's t with 3 degrees of freedom.
 #[test]
 fn risk_is_that_of_the_printed_futures() {
     const DRAWS: usize = 3000;
