@@ -19,11 +19,7 @@ fn commit() -> String {
     };
     // Git writes this file at every commit, checkout and merge.
     let log = Path::new(&folder).join("logs/HEAD");
-    let moves = if log.is_file() {
-        log
-    } else {
-        Path::new(&folder).join("HEAD")
-    };
+    let moves = if log.is_file() { log } else { Path::new(&folder).join("HEAD") };
     println!("cargo::rerun-if-changed={}", moves.display());
     // An edit makes the program differ from the commit.
     println!("cargo::rerun-if-changed=../../crates");
@@ -33,9 +29,5 @@ fn commit() -> String {
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     let answer = String::from_utf8(output.stdout).ok()?;
-    output
-        .status
-        .success()
-        .then(|| answer.trim().to_owned())
-        .filter(|answer| !answer.is_empty())
+    output.status.success().then(|| answer.trim().to_owned()).filter(|answer| !answer.is_empty())
 }

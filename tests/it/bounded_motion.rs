@@ -56,10 +56,7 @@ fn observation() -> impl Strategy<Value = Vec<Position>> {
                 let seen = [0, 1].map(|axis| here[axis] + tremble * off[axis]);
                 // A tracker that lost the pedestrian repeats the last position.
                 track.push(if held { *track.last().unwrap_or(&seen) } else { seen });
-                here = [
-                    here[0] + TIME_STEP * speed * heading.cos(),
-                    here[1] + TIME_STEP * speed * heading.sin(),
-                ];
+                here = [here[0] + TIME_STEP * speed * heading.cos(), here[1] + TIME_STEP * speed * heading.sin()];
                 heading += turn;
                 speed = (speed * faster).min(12.0);
             }
@@ -78,11 +75,7 @@ fn within_bounds(observed: &[Position], certified: &CertifiedForecast, i: usize)
     let familiarity = forecast.familiarity(i);
     prop_assert!(familiarity.is_some_and(|f| f > 0.0 && f <= 1.0), "{familiarity:?}");
     for k in 0..forecast.hypotheses() {
-        let path: Vec<Position> = observed[OBSERVED - 1..]
-            .iter()
-            .chain(forecast.hypothesis(i, k))
-            .copied()
-            .collect();
+        let path: Vec<Position> = observed[OBSERVED - 1..].iter().chain(forecast.hypothesis(i, k)).copied().collect();
         let fastest = steps(&path).fold(0.0, f64::max);
         prop_assert!(fastest <= limit(observed), "{fastest} m/s after {observed:?}");
         let certificate = certified.certificate(i, k);
@@ -127,10 +120,7 @@ fn the_certified_forecast_is_the_forecast() {
         let goals = model.goal_model().goals(&windows).unwrap();
         let many = model.forecast_certified(&windows).unwrap();
         let one = model.forecast_central_certified(&windows).unwrap();
-        let plain = [
-            model.forecast_all(&windows).unwrap(),
-            model.forecast_central(&windows).unwrap(),
-        ];
+        let plain = [model.forecast_all(&windows).unwrap(), model.forecast_central(&windows).unwrap()];
         for ((certified, plain), hypotheses) in [many, one].iter().zip(&plain).zip([20, 1]) {
             for ((certified, plain), window) in certified.iter().zip(plain).zip(&windows) {
                 assert_eq!(bits::of(&certified.forecast), bits::of(plain));
@@ -149,9 +139,7 @@ fn the_certified_forecast_is_the_forecast() {
 /// minADE (m) of the model and of straight lines to its goals, for a pedestrian that walks straight at this speed.
 fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
     let position_at = |t: usize| [TIME_STEP * speed * t as f64, 0.0];
-    let forecast = model
-        .forecast(&window(vec![(0..OBSERVED).map(position_at).collect()]))
-        .unwrap();
+    let forecast = model.forecast(&window(vec![(0..OBSERVED).map(position_at).collect()])).unwrap();
     let start = position_at(OBSERVED - 1);
     let error = |place: &dyn Fn(usize, usize) -> Position| {
         let ade = |k: usize| {
@@ -205,9 +193,7 @@ fn models_without_a_flow_are_refused() {
         place.fails(forecast, &[&format!("`{variant}`"), "no flow to certify"]);
         let model = drawn_model::of(variant);
         let no_flow = |error: ForecastError| {
-            let ForecastError::Model { source, .. } = error else {
-                panic!("{error}")
-            };
+            let ForecastError::Model { source, .. } = error else { panic!("{error}") };
             let expected = CertificateError::NoFlow { variant };
             assert_eq!(source.downcast_ref::<CertificateError>(), Some(&expected));
         };

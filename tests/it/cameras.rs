@@ -134,10 +134,7 @@ const LINE: &str = "forecast - --model run --threads 1 --frame-step 10";
 
 /// Recordings of two scenes, whose frames alternate; the second scene begins two frames later.
 fn recordings() -> [(&'static str, Vec<Row>); 2] {
-    [
-        ("hall", own_tracks::three_pedestrians(12)),
-        ("Tür, 2", own_tracks::of_scene("plaza", 0..100)),
-    ]
+    [("hall", own_tracks::three_pedestrians(12)), ("Tür, 2", own_tracks::of_scene("plaza", 0..100))]
 }
 
 /// The table of the recordings.
@@ -215,9 +212,7 @@ fn what_does_not_fit_scenes_is_refused() {
     place.fails("forecast scenes.csv --model run", &[of_another]);
     let tracks = own_tracks::csv(&own_tracks::three_pedestrians(9));
     let finished = place.run_on(&tracks, &format!("{LINE} --memory memories"));
-    finished
-        .says("memories is a folder, and the lines name no scenes")
-        .fails();
+    finished.says("memories is a folder, and the lines name no scenes").fails();
     let finished = place.run_on(&place.text("scenes.csv"), &format!("{LINE} --memory new.memory"));
     finished.says("new.memory is a file of one place").fails();
     assert!(!place.at("new.memory").exists());
@@ -238,9 +233,7 @@ fn each_scene_has_a_memory_file_of_its_own() {
     assert_eq!(finished.stdout.lines().count(), forgetful.lines().count());
     assert_eq!(place.text("memories/hall.memory"), "damaged");
     place.remove("memories/hall.memory");
-    place
-        .run_on(&text, &format!("{LINE} --one --memory memories"))
-        .succeeds();
+    place.run_on(&text, &format!("{LINE} --one --memory memories")).succeeds();
     let memory = |file: &str| SceneMemory::read(&place.at(&format!("memories/{file}"))).unwrap();
     let mut alone = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
     for (frame, people) in own_tracks::frames(&recordings()[0].1) {

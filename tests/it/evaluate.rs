@@ -53,11 +53,7 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     let stability = |row: &&ResultRow| row.scores.stability.unwrap();
     let model = stability(rows.iter().find(|row| row.conditions.forecaster == "DDL").unwrap());
     let (stable, all_stable) = ((model.certified, model.decreasing), (Some(1.0), 1.0));
-    assert_eq!(
-        stable == all_stable,
-        protocol != Protocol::Published,
-        "{protocol}: {model:?}"
-    );
+    assert_eq!(stable == all_stable, protocol != Protocol::Published, "{protocol}: {model:?}");
     let plain = named("DDL with plain Euler steps").map(stability);
     assert_eq!(plain.is_some(), protocol == Protocol::Fair);
     if let Some(plain) = plain {
@@ -187,9 +183,7 @@ fn futures_are_written_as_sample_files_and_read_back() {
     };
     let of_model = first(&place.ok(&format!("{evaluate} joint")));
     let fold = format!("--convention simulated --fold {}", crowd::FOLD);
-    let read = place.ok(&format!(
-        "evaluate --forecasts futures {fold} --protocol joint --intersection"
-    ));
+    let read = place.ok(&format!("evaluate --forecasts futures {fold} --protocol joint --intersection"));
     assert_eq!(first(&read), of_model);
 }
 

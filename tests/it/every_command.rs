@@ -72,16 +72,12 @@ fn only_system_libraries_are_loaded() {
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(8));
     for line in ["--help", "forecast tracks.csv", "info --json"] {
         let mut command = program::command(place.path(), line);
-        command
-            .env("LD_DEBUG", "libs")
-            .env("LD_DEBUG_OUTPUT", place.at("loaded"));
+        command.env("LD_DEBUG", "libs").env("LD_DEBUG_OUTPUT", place.at("loaded"));
         let mut child = command.stdout(Stdio::null()).spawn().unwrap();
         assert!(child.wait().unwrap().success());
         // The system's loader reports every library by its path.
         let loader_log = place.text(&format!("loaded.{}", child.id()));
-        let paths = loader_log
-            .lines()
-            .filter_map(|line| Some(line.split_once("calling init: ")?.1));
+        let paths = loader_log.lines().filter_map(|line| Some(line.split_once("calling init: ")?.1));
         let name = |path: &str| Some(path.rsplit('/').next()?.split(".so").next()?.to_owned());
         let mut loaded: BTreeSet<String> = paths.filter_map(name).collect();
         assert!(loaded.contains("libc"), "{line}: {loader_log}");

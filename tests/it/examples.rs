@@ -9,9 +9,7 @@ use std::process::Command;
 fn the_picture_of_the_readme_is_drawn() {
     let place = Place::empty();
     place.write("sample.csv", include_str!("../../datasets/sample.csv"));
-    let target = "-p ddl-forecast --example draw_forecast --features report"
-        .split(' ')
-        .collect::<Vec<_>>();
+    let target = "-p ddl-forecast --example draw_forecast --features report".split(' ').collect::<Vec<_>>();
     let drawing = program::built(Path::new("examples/draw_forecast"), &target);
     let arguments = ["sample.csv", "15", "forecast.svg"];
     let drawn = Command::new(drawing).args(arguments).current_dir(place.path()).status();

@@ -91,14 +91,9 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
     let mut lines: Vec<Value> = json_lines(&forecast("--format jsonl --certificate"));
     let certified = forecast("--certificate");
     let mut rows = table(&certified).into_iter();
-    let mut pedestrians = [70, 80, 90]
-        .into_iter()
-        .flat_map(|moment| [1, 2, 3].map(|id| (moment, id)));
+    let mut pedestrians = [70, 80, 90].into_iter().flat_map(|moment| [1, 2, 3].map(|id| (moment, id)));
     for line in &mut lines {
-        has_fields(
-            line,
-            "age familiarity frames hypotheses observed_until pedestrian spread uncertainty unseen",
-        );
+        has_fields(line, "age familiarity frames hypotheses observed_until pedestrian spread uncertainty unseen");
         let (moment, id) = pedestrians.next().unwrap();
         assert_eq!(json!([line["observed_until"], line["pedestrian"]]), json!([moment, id]));
         let frames: Vec<i64> = (1..=12).map(|t| moment + t * FRAME_STEP).collect();
@@ -107,10 +102,7 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
         assert!(familiarity > 0.0 && familiarity <= 1.0);
         let spread = Vec::<f64>::deserialize(&line["spread"]).unwrap();
         assert!(spread.is_sorted() && spread.len() == FRAMES);
-        assert_eq!(
-            json!([line["unseen"], line["age"], line["uncertainty"]]),
-            json!([0, 0.0, 0.0])
-        );
+        assert_eq!(json!([line["unseen"], line["age"], line["uncertainty"]]), json!([0, 0.0, 0.0]));
         let hypotheses = line["hypotheses"].as_array_mut().unwrap();
         assert_eq!(hypotheses.len(), HYPOTHESES);
         let weights: f64 = hypotheses.iter().map(|one| one["weight"].as_f64().unwrap()).sum();
@@ -122,10 +114,9 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
                 let row = rows.next().unwrap();
                 let place = ["observed_until", "pedestrian", "hypothesis", "frame"].map(|name| &row[name]);
                 assert_eq!(json!(place), json!([moment, id, k, frame]));
-                for (printed, position) in [
-                    (["x", "y"], &hypothesis["positions"][t]),
-                    (["goal_x", "goal_y"], &hypothesis["goal"]),
-                ] {
+                for (printed, position) in
+                    [(["x", "y"], &hypothesis["positions"][t]), (["goal_x", "goal_y"], &hypothesis["goal"])]
+                {
                     let position = Position::deserialize(position).unwrap();
                     assert!(own_tracks::alike_in_a_table(numbers(&row, printed), position));
                 }
@@ -197,10 +188,7 @@ fn forecasts_move_with_the_origin_of_the_map() {
             assert!(hypothesis.iter().all(|row| row["certified"] == true));
             let left = hypothesis.iter().map(|row| numbers(row, ["distance_to_goal"])[0]);
             let left: Vec<f64> = left.collect();
-            assert!(
-                left.windows(2).all(|pair| pair[1] < pair[0] || pair[0] == 0.0),
-                "{left:?}"
-            );
+            assert!(left.windows(2).all(|pair| pair[1] < pair[0] || pair[0] == 0.0), "{left:?}");
         }
     }
 }

@@ -95,10 +95,9 @@ fn a_memory_of_another_place_stays_as_it_is() {
     let place = Place::with_model();
     remember(&place, "hall.memory", &rows(0..300), FRAME_STEP);
     let before = place.read("hall.memory");
-    for (steps, words) in [
-        (200, "the memory is of another place"),
-        (40, "too few to tell whether the memory is of this place"),
-    ] {
+    for (steps, words) in
+        [(200, "the memory is of another place"), (40, "too few to tell whether the memory is of this place")]
+    {
         let elsewhere = own_tracks::csv(&moved(rows(0..steps)));
         let finished = place.run_on(&elsewhere, &format!("{LINE} {KEPT}"));
         assert_eq!(finished.code, Some(0), "{finished:?}");
@@ -150,10 +149,7 @@ nowhere/hall.memory => nowhere/hall.memory: cannot write this file
 ";
     for case in cases.trim().lines() {
         let (file, words) = case.split_once(" => ").unwrap();
-        place
-            .run_on(&input, &format!("{LINE} --memory {file}"))
-            .says(words)
-            .fails();
+        place.run_on(&input, &format!("{LINE} --memory {file}")).says(words).fails();
     }
     // The memory would overwrite the forecasts.
     let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));

@@ -36,10 +36,8 @@ fn a_renamed_training_recording_is_no_test() {
         return;
     };
     let place = Place::empty();
-    let rounded = |row: &Observation| Observation {
-        position: row.position.map(|x| (100.0 * x).round() / 100.0),
-        ..*row
-    };
+    let rounded =
+        |row: &Observation| Observation { position: row.position.map(|x| (100.0 * x).round() / 100.0), ..*row };
     let of_eth = dataset.recording("eth").unwrap();
     let rows: Vec<Observation> = of_eth.observations().iter().map(rounded).collect();
     let of_eth = Recording::new("yard", of_eth.frame_step(), rows).unwrap();

@@ -19,12 +19,8 @@ const WILD: [(&str, Change); 7] = [
     ("the origin", |_, _, _, _| [0.0; 2]),
     ("far away", |_, i, t, _| [1e9 * (i + 1) as f64, -1e7 * t as f64]),
     ("standing still", |window, i, _, _| window.observed(i)[OBSERVED - 1]),
-    ("the next pedestrian's", |window, i, t, _| {
-        window.track((i + 1) % window.len())[t]
-    }),
-    ("backwards in time", |window, i, t, _| {
-        window.track(i)[WINDOW - 1 + OBSERVED - t]
-    }),
+    ("the next pedestrian's", |window, i, t, _| window.track((i + 1) % window.len())[t]),
+    ("backwards in time", |window, i, t, _| window.track(i)[WINDOW - 1 + OBSERVED - t]),
     ("slightly changed", |_, _, _, p| [p[0].next_up(), p[1].next_down()]),
 ];
 
@@ -78,11 +74,9 @@ impl GoalSource for EstimatedGoals {
 
 #[test]
 fn baselines_never_see_the_future() {
-    for forecaster in [
-        ConstantVelocity::LastStep,
-        ConstantVelocity::MeanObserved,
-        ConstantVelocity::AngularNoise { seed: 3 },
-    ] {
+    for forecaster in
+        [ConstantVelocity::LastStep, ConstantVelocity::MeanObserved, ConstantVelocity::AngularNoise { seed: 3 }]
+    {
         never_sees_the_future(&forecaster);
     }
     let goals = EstimatedGoals::with(GoalEstimatorParams::default());

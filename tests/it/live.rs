@@ -57,11 +57,7 @@ impl Live {
         let mut command = program::command(place.path(), &line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
         let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-        Self {
-            input: child.stdin.take().unwrap(),
-            output: BufReader::new(child.stdout.take().unwrap()),
-            child,
-        }
+        Self { input: child.stdin.take().unwrap(), output: BufReader::new(child.stdout.take().unwrap()), child }
     }
 
     pub(crate) fn write(&mut self, text: &str) {
@@ -123,11 +119,7 @@ fn two_frames_are_enough_and_a_closed_output_ends_it_quietly() {
     assert_eq!((&first["observed_until"], &first["unseen"]), (&10.into(), &6.into()));
     assert_eq!(first["hypotheses"].as_array().unwrap().len(), 1);
     assert_eq!(first["hypotheses"][0]["certificate"]["holds"], true);
-    let Live {
-        child,
-        mut input,
-        output,
-    } = live;
+    let Live { child, mut input, output } = live;
     drop(output);
     for frame in (20..100).step_by(10) {
         // It may have ended already.

@@ -9,9 +9,7 @@ const LOGS: [&str; 4] = ["people_zstd", "detections_lz4", "persons_json", "lines
 fn place() -> Place {
     let place = Place::with_model();
     for name in LOGS.map(|name| format!("{name}.mcap")) {
-        let seed = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("fuzz/corpus/mcap")
-            .join(&name);
+        let seed = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus/mcap").join(&name);
         place.write(&name, std::fs::read(seed).unwrap());
     }
     place
@@ -35,28 +33,12 @@ fn every_kind_of_log_and_its_copy_give_the_same_forecasts() {
 fn what_is_missing_is_told() {
     let place = place();
     for (line, code, words) in [
-        (
-            "forecast people_zstd.mcap --fps 10",
-            1,
-            "--fps 10 gives a rate: leave it out",
-        ),
-        (
-            "forecast people_zstd.mcap --unit cm",
-            1,
-            "leave out --columns and --unit",
-        ),
-        (
-            "data detections_lz4.mcap --keep class=car",
-            0,
-            "; 30 rows left out: class person",
-        ),
+        ("forecast people_zstd.mcap --fps 10", 1, "--fps 10 gives a rate: leave it out"),
+        ("forecast people_zstd.mcap --unit cm", 1, "leave out --columns and --unit"),
+        ("data detections_lz4.mcap --keep class=car", 0, "; 30 rows left out: class person"),
         ("forecast tracks.csv --topic /people", 1, "only MCAP has topics"),
         ("forecast - -o out.mcap", 1, "not from standard input"),
-        (
-            "forecast tracks.csv --format csv -o out.mcap",
-            1,
-            "leave out one of them",
-        ),
+        ("forecast tracks.csv --format csv -o out.mcap", 1, "leave out one of them"),
     ] {
         let finished = place.run(line);
         assert_eq!(finished.code, Some(code), "{finished:?}");

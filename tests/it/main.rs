@@ -31,7 +31,5 @@ mod tracks_as_they_come;
 
 #[test]
 fn readers_handle_edited_files() {
-    ddl_tests::outside_bytes::READERS
-        .into_iter()
-        .for_each(ddl_tests::outside_bytes::check);
+    ddl_tests::outside_bytes::READERS.into_iter().for_each(ddl_tests::outside_bytes::check);
 }

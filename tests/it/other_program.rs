@@ -45,16 +45,8 @@ fn report(place: &Place, folder: &str, name: &str) -> Report {
     for protocol in ["fair", "single"] {
         let [mine, baseline] = [name, BASELINE].map(|name| &row(&report, protocol, name).scores);
         assert_eq!(mine.pedestrians, baseline.pedestrians);
-        let errors = |of: &Scores| {
-            [
-                of.min_ade,
-                of.min_fde,
-                of.joint_ade,
-                of.joint_fde,
-                of.miss_rate,
-                of.collision_rate,
-            ]
-        };
+        let errors =
+            |of: &Scores| [of.min_ade, of.min_fde, of.joint_ade, of.joint_fde, of.miss_rate, of.collision_rate];
         for (a, b) in errors(mine).into_iter().zip(errors(baseline)) {
             assert!((a - b).abs() < 1e-9, "{protocol}: {a} and {b}");
         }

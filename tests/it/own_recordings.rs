@@ -9,12 +9,9 @@ fn models_are_measured_on_own_recordings() {
     let windows = place.ok("windows --data mine --fold yard");
     assert!(windows.lines().count() > 100 && !windows.contains("lobby"));
     let measure = "--test-pedestrians 40 --protocol single --threads 1";
-    let [of_fold, of_file, of_model] = [
-        "--data mine --fold yard",
-        "--data mine/yard.csv",
-        "--model world --convention own --data mine/yard.csv",
-    ]
-    .map(|subject| place.ok(&format!("evaluate {subject} {measure}")));
+    let [of_fold, of_file, of_model] =
+        ["--data mine --fold yard", "--data mine/yard.csv", "--model world --convention own --data mine/yard.csv"]
+            .map(|subject| place.ok(&format!("evaluate {subject} {measure}")));
     assert!(of_fold.contains("convention own, protocol single"), "{of_fold}");
     assert!(of_fold.contains("\nyard "), "{of_fold}");
     assert_eq!(of_fold, of_file);

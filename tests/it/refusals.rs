@@ -32,11 +32,9 @@ const FILES: [(&str, &str); 20] = [
 /// A folder with models, recordings and tracks, sound ones and others.
 fn place() -> Place {
     let place = Place::with_model();
-    for (run, lost) in [
-        ("unfinished", "model.safetensors"),
-        ("without_goals", "proposal.safetensors"),
-        ("old", "config.json"),
-    ] {
+    for (run, lost) in
+        [("unfinished", "model.safetensors"), ("without_goals", "proposal.safetensors"), ("old", "config.json")]
+    {
         folder_contents::write(drawn_model::contents(Variant::Full), &place.at(run));
         place.remove(&format!("{run}/{lost}"));
     }

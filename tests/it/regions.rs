@@ -18,10 +18,7 @@ fn discs(line: &Value) -> Vec<Vec<[f64; 3]>> {
 /// Share of the later positions that are inside the regions of a line, for lines from that frame on.
 fn held(lines: &[Value], recording: &Recording, from: i64) -> f64 {
     let (mut inside, mut seen) = (0, 0);
-    for line in lines
-        .iter()
-        .filter(|line| line["observed_until"].as_i64() >= Some(from))
-    {
+    for line in lines.iter().filter(|line| line["observed_until"].as_i64() >= Some(from)) {
         assert_eq!(line["regions"][0]["probability"], 0.9);
         let id = line["pedestrian"].as_i64().map(PedestrianId);
         let frames = Vec::<i64>::deserialize(&line["frames"]).unwrap();

@@ -8,12 +8,7 @@ use serde_json::Value;
 fn rows() -> Vec<Row> {
     let at = |t: i64| {
         let x = 0.5 * t as f64;
-        [
-            (t, 1, x, 0.0),
-            (t, 2, x, 0.7),
-            (t, 3, 9.0 - x, 0.2),
-            (t, 4, 40.0, 40.0 + x),
-        ]
+        [(t, 1, x, 0.0), (t, 2, x, 0.7), (t, 3, 9.0 - x, 0.2), (t, 4, 40.0, 40.0 + x)]
     };
     (0..10).flat_map(at).collect()
 }
@@ -45,17 +40,11 @@ fn futures_are_of_the_scene_and_the_same_in_a_stream() {
         serde_json::from_value(end.clone()).unwrap()
     };
     let [a, b] = [0, 1].map(|i| end(&futures[0], i));
-    assert!(
-        (a[0] - b[0]).hypot(a[1] - b[1]) < 1.5,
-        "the likeliest future parts a group: {a:?} {b:?}"
-    );
+    assert!((a[0] - b[0]).hypot(a[1] - b[1]) < 1.5, "the likeliest future parts a group: {a:?} {b:?}");
     let csv = place.ok("forecast tracks.csv --fps 2.5 --joint --last --certificate --region 0.9");
     assert!(csv.starts_with("observed_until,pedestrian,future,weight,") && !csv.contains(",false,"));
     // One pedestrian alone has its own hypotheses.
-    place.write_tracks(
-        "one.csv",
-        &rows().into_iter().filter(|row| row.1 == 4).collect::<Vec<_>>(),
-    );
+    place.write_tracks("one.csv", &rows().into_iter().filter(|row| row.1 == 4).collect::<Vec<_>>());
     let one = |joint: &str| place.ok(&format!("forecast one.csv --fps 2.5 --last{joint}"));
     assert_eq!(one(" --joint").replace(",future,", ",hypothesis,"), one(""));
 }
@@ -64,40 +53,26 @@ fn futures_are_of_the_scene_and_the_same_in_a_stream() {
 fn the_others_make_way_for_a_plan() {
     let place = place();
     let ends = |options: &str| -> f64 {
-        let lines = place.ok(&format!(
-            "forecast tracks.csv --fps 2.5 --joint --last --format jsonl {options}"
-        ));
+        let lines = place.ok(&format!("forecast tracks.csv --fps 2.5 --joint --last --format jsonl {options}"));
         let line: Value = json_lines(&lines).pop().unwrap();
         let futures = line["futures"].as_array().unwrap();
         let through = |future: &&Value| {
             let path = future["paths"][0]["positions"].as_array().unwrap().iter();
-            path.into_iter()
-                .any(|at| (at[0].as_f64().unwrap() - 7.0).hypot(at[1].as_f64().unwrap() - 0.3) < 0.3)
+            path.into_iter().any(|at| (at[0].as_f64().unwrap() - 7.0).hypot(at[1].as_f64().unwrap() - 0.3) < 0.3)
         };
-        futures
-            .iter()
-            .filter(through)
-            .map(|future| future["weight"].as_f64().unwrap())
-            .sum()
+        futures.iter().filter(through).map(|future| future["weight"].as_f64().unwrap()).sum()
     };
     let (without, given) = (ends(""), ends("--plan robot.csv"));
     assert!(given < 0.5 * without, "{given} of {without} walk through the robot");
     let ego = place.ok("forecast tracks.csv --fps 2.5 --joint --last --plan robot.csv --ego 4");
-    assert_eq!(
-        ego.lines()
-            .filter(|line| line.starts_with("9,4,") && line.contains(",7.0,0.3,"))
-            .count(),
-        240
-    );
+    assert_eq!(ego.lines().filter(|line| line.starts_with("9,4,") && line.contains(",7.0,0.3,")).count(), 240);
 }
 
 #[test]
 fn risk_is_high_where_people_walk() {
     let place = place();
     let risk = |options: &str| -> Vec<Value> {
-        json_lines(&place.ok(&format!(
-            "risk tracks.csv --fps 2.5 --last --plan plans.csv --format jsonl {options}"
-        )))
+        json_lines(&place.ok(&format!("risk tracks.csv --fps 2.5 --last --plan plans.csv --format jsonl {options}")))
     };
     let [through, away] = risk("").try_into().unwrap();
     let of = |line: &Value| line["risk"].as_f64().unwrap();
@@ -136,11 +111,7 @@ fn risk_is_that_of_the_printed_futures() {
             let scales = [&[0.0], &numbers(&joint["pedestrians"][i]["spread"])[..]].concat();
             let mut path = vec![[if i == 3 { 40.0 } else { 4.5 }, y]];
             path.extend(
-                future["paths"][i]["positions"]
-                    .as_array()
-                    .unwrap()
-                    .iter()
-                    .map(|at| [numbers(at)[0], numbers(at)[1]]),
+                future["paths"][i]["positions"].as_array().unwrap().iter().map(|at| [numbers(at)[0], numbers(at)[1]]),
             );
             let mut close = [0.0; 12];
             for z in (0..DRAWS).map(|_| deviation()) {
@@ -164,11 +135,7 @@ fn risk_is_that_of_the_printed_futures() {
         until = std::array::from_fn(|step| until[step] + weight * (1.0 - nobody[step]));
     }
     let risk = ask("risk tracks.csv --fps 2.5 --last --plan plans.csv --unseen --format jsonl");
-    let of_each = risk["pedestrians"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|one| one["risk"].as_f64().unwrap());
+    let of_each = risk["pedestrians"].as_array().unwrap().iter().map(|one| one["risk"].as_f64().unwrap());
     let found = numbers(&risk["until"]).into_iter().chain(of_each);
     for (found, expected) in found.zip(until.into_iter().chain(pedestrians)) {
         assert!((found - expected).abs() < 0.025, "{risk} {until:?} {pedestrians:?}");
@@ -181,10 +148,7 @@ fn occupancy_has_the_formats_of_maps() {
     let occupancy = "occupancy tracks.csv --fps 2.5 --last --cell 0.25 --every 1.2";
     let grids: Vec<Value> = json_lines(&place.ok(&format!("{occupancy} --area=-2,-3,14,3")));
     assert_eq!(grids.len(), 5);
-    assert_eq!(
-        (&grids[0]["info"]["width"], &grids[0]["info"]["height"]),
-        (&64.into(), &24.into())
-    );
+    assert_eq!((&grids[0]["info"]["width"], &grids[0]["info"]["height"]), (&64.into(), &24.into()));
     assert_eq!(grids[0]["data"].as_array().unwrap().len(), 64 * 24);
     place.ok(&format!("{occupancy} --folder grids"));
     assert!(

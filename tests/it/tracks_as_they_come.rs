@@ -202,11 +202,7 @@ fn files_and_options_override_the_rate_of_a_run() {
     let two = run("forecast two.ndjson --last").succeeds();
     assert_eq!(two, run("forecast plain.csv --last --fps 20").succeeds());
     for (file, options, note) in [
-        (
-            "plain.csv",
-            "",
-            "a step of 0.4 s is taken as 20 frames, as in the run's training (--fps 50)",
-        ),
+        ("plain.csv", "", "a step of 0.4 s is taken as 20 frames, as in the run's training (--fps 50)"),
         ("two.ndjson", "", "taken as 8 frames, from the fps of the scenes, 2"),
         ("plain.csv", "--fps 25", ""),
     ] {
@@ -258,18 +254,13 @@ fn streams_doubt_what_files_doubt() {
     let too_fast = walk.replace('.', "");
     let cases = [
         (&walk, "nine in ten steps of walking pedestrians are slower than"),
-        (
-            &narrow,
-            "no pedestrian moves farther|all 4 pedestrians are within|nine in ten",
-        ),
+        (&narrow, "no pedestrian moves farther|all 4 pedestrians are within|nine in ten"),
         (&too_fast, "half of the steps are faster"),
     ];
     for (tracks, doubts) in cases {
         place.write("tracks.csv", tracks);
         let of_file = place.run("forecast tracks.csv --frame-step 1 --one --threads 1").stderr;
-        let of_stream = place
-            .run_on(tracks, "forecast - --frame-step 1 --one --threads 1")
-            .stderr;
+        let of_stream = place.run_on(tracks, "forecast - --frame-step 1 --one --threads 1").stderr;
         let doubt = doubts.split('|').find(|doubt| of_file.contains(doubt)).unwrap();
         assert_eq!(of_stream.matches(doubt).count(), 1, "{of_file}\n{of_stream}");
     }
@@ -282,12 +273,7 @@ fn a_stream_takes_the_rate_of_a_comment() {
     let line = "forecast - --one --threads 1 --format jsonl";
     let of_comment = place.run_on(&stated, line);
     // The same rate in any words is not another one.
-    for (option, is_other) in [
-        ("--fps 10", false),
-        ("--dt 0.1", false),
-        ("--frame-step 4", false),
-        ("--fps 9", true),
-    ] {
+    for (option, is_other) in [("--fps 10", false), ("--dt 0.1", false), ("--frame-step 4", false), ("--fps 9", true)] {
         let of_option = place.run_on(&stated, &format!("{line} {option}"));
         assert_eq!(of_comment.stdout != of_option.stdout, is_other, "{option}");
         let told = of_option.stderr.contains("although the input says 10 frames a second");

@@ -71,10 +71,7 @@ fn built_in_models_agree_with_libtorch_on_their_test_scenes() {
             difference.add(&a, &b);
         }
         writeln!(std::io::stdout(), "{name}: {difference:?}").unwrap();
-        assert!(
-            difference.others * 1000 <= difference.pedestrians,
-            "{name}: {difference:?}"
-        );
+        assert!(difference.others * 1000 <= difference.pedestrians, "{name}: {difference:?}");
         assert!(difference.pedestrians > 20, "{name}: {difference:?}");
         assert!(difference.position < 1e-4, "{name}: {difference:?}");
         let exact = difference.goal < 1e-5 && difference.weight < 1e-5;

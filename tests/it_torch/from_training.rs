@@ -98,20 +98,13 @@ fn the_recommended_recipe_is_the_default() {
 fn the_published_recipe_is_the_papers() {
     let config = started_with("--recipe published");
     let published = StarConfig::published(Variant::Full);
-    assert_eq!(
-        (&config.star, &config.training),
-        (&published, &TrainingConfig::published())
-    );
+    assert_eq!((&config.star, &config.training), (&published, &TrainingConfig::published()));
     // The numbers of the paper, independent of the constructors.
     let star = (config.star.frame, config.star.feed_forward_width);
     assert_eq!(star, (NetworkFrame::World, 2048));
     let training = (config.training.epochs, config.training.batch_pedestrians);
     assert_eq!((config.training.objective, training), (Objective::NextStep, (200, 256)));
-    assert_eq!(
-        config.goals,
-        GoalRecipe::retrieved(1),
-        "the paper has no network of goals"
-    );
+    assert_eq!(config.goals, GoalRecipe::retrieved(1), "the paper has no network of goals");
 }
 
 #[test]
@@ -164,11 +157,7 @@ fn numbers_out_of_range_are_refused_before_anything_is_written() {
     let eth = "train --convention simulated --fold eth --out new";
     place.fails(eth, &["eth", "corridor", "plaza"]);
     // If a number were accepted by mistake, the training must be short.
-    let short = [
-        ("--epochs", "1"),
-        ("--train-pedestrians", "1"),
-        ("--proposal-steps", "1"),
-    ];
+    let short = [("--epochs", "1"), ("--train-pedestrians", "1"), ("--proposal-steps", "1")];
     for (option, value, field) in [
         ("--epochs", "0", "epochs"),
         ("--batch-pedestrians", "0", "batch_pedestrians"),

@@ -18,7 +18,5 @@ fn the_page_about_training() {
 
 #[test]
 fn readers_of_trainings_handle_edited_files() {
-    ddl_tests::outside_bytes::TORCH_READERS
-        .into_iter()
-        .for_each(ddl_tests::outside_bytes::check);
+    ddl_tests::outside_bytes::TORCH_READERS.into_iter().for_each(ddl_tests::outside_bytes::check);
 }

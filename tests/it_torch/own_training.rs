@@ -90,10 +90,7 @@ fn training_recordings_are_refused_as_test_data(place: &Place) {
     let text = place.text("mine/yard.csv");
     let (cut, _) = text.trim_end().rsplit_once('\n').unwrap();
     place.write("other/cut.csv", cut);
-    place.fails(
-        &evaluate("other"),
-        &["was trained on cut (", "% of its paths are known"],
-    );
+    place.fails(&evaluate("other"), &["was trained on cut (", "% of its paths are known"]);
 }
 
 #[test]
@@ -187,10 +184,7 @@ fn a_training_starts_with_the_weights_of_another_model() {
 fn short_clips_are_validated_whole_and_start_with_the_built_in_model() {
     let place = with_clips(300, 6);
     let finished = place.run(&format!("train --data clips --out run --epochs 1 {SMALL}"));
-    for words in [
-        "(--validation-recordings clip1,clip4)",
-        "weights of the built-in model world (--from none",
-    ] {
+    for words in ["(--validation-recordings clip1,clip4)", "weights of the built-in model world (--from none"] {
         assert!(finished.stderr.contains(words), "{finished:?}");
     }
     let _ = finished.succeeds();

@@ -27,11 +27,7 @@ pub fn commands(page: &str) -> Vec<Command> {
             continue;
         }
         if let Some(typed) = text.strip_prefix("$ ") {
-            commands.push(Command {
-                line,
-                typed: typed.trim_end().to_owned(),
-                answered: Vec::new(),
-            });
+            commands.push(Command { line, typed: typed.trim_end().to_owned(), answered: Vec::new() });
         } else if let Some(last) = commands.last_mut() {
             match text.strip_prefix("> ") {
                 Some(more) if last.answered.is_empty() => {
@@ -66,18 +62,8 @@ mod tests {
                     > done\n```\n\
             ```text\n$ not this\n```\n  ```console\n  $ ls -l\n  ```\n";
         let commands = commands(page);
-        let typed: Vec<(usize, &str)> = commands
-            .iter()
-            .map(|command| (command.line, command.typed.as_str()))
-            .collect();
-        assert_eq!(
-            typed,
-            [
-                (3, "ddl info   # what is there"),
-                (6, "for i in 1 2; do\n  echo $i\ndone"),
-                (14, "ls -l")
-            ]
-        );
+        let typed: Vec<(usize, &str)> = commands.iter().map(|command| (command.line, command.typed.as_str())).collect();
+        assert_eq!(typed, [(3, "ddl info   # what is there"), (6, "for i in 1 2; do\n  echo $i\ndone"), (14, "ls -l")]);
         assert_eq!(commands[0].answered, ["version: 1", "..."]);
         assert_eq!(commands[0].words().unwrap(), ["ddl", "info"]);
         assert_eq!(commands[1].words(), None);

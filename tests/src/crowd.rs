@@ -35,10 +35,8 @@ pub fn training_windows() -> Vec<Window> {
 /// A goal estimator whose experts walk in the training scenes.
 pub fn goal_estimator(params: GoalEstimatorParams) -> GoalEstimator {
     let windows = training_windows();
-    let tracks: Vec<_> = windows
-        .iter()
-        .flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec()))
-        .collect();
+    let tracks: Vec<_> =
+        windows.iter().flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec())).collect();
     let stride = (tracks.len() / EXPERTS).max(1);
     let some = tracks.into_iter().step_by(stride).collect();
     let library = ExpertLibrary::new(some, TIME_STEP).expect("simulated tracks are complete");

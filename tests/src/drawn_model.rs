@@ -38,10 +38,7 @@ pub fn contents(variant: Variant) -> &'static Contents {
 
 /// The configuration of the run: the recommended recipe, simulated crowds, small networks for goals.
 pub fn config(variant: Variant) -> RunConfig {
-    let training = TrainingConfig {
-        epochs: 1,
-        ..TrainingConfig::recommended(variant)
-    };
+    let training = TrainingConfig { epochs: 1, ..TrainingConfig::recommended(variant) };
     RunConfig {
         format: FORMAT,
         star: StarConfig::recommended(variant),
@@ -76,10 +73,7 @@ pub fn goal_recipe(seed: u64) -> GoalRecipe {
             members: 2,
             width: 24,
             neighbour_width: 16,
-            memory: Some(MemoryConfig {
-                width: 16,
-                ..MemoryConfig::default()
-            }),
+            memory: Some(MemoryConfig { width: 16, ..MemoryConfig::default() }),
             ..ProposalConfig::default()
         };
         proposal.training.steps = 20;
@@ -108,17 +102,9 @@ pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
         let file = folder.join("proposal.safetensors");
         save_weights(&weights, &config.goals_origin(), &file).expect("weights can be written");
     }
-    let tracks = windows
-        .iter()
-        .flat_map(|window| (0..window.len()).map(|i| window.track(i)));
+    let tracks = windows.iter().flat_map(|window| (0..window.len()).map(|i| window.track(i)));
     let positions: Vec<f64> = tracks.flatten().flatten().copied().collect();
-    let epoch = EpochReport {
-        epoch: 1,
-        loss: 1.0,
-        batches: 4,
-        seconds: 1.0,
-        validation: None,
-    };
+    let epoch = EpochReport { epoch: 1, loss: 1.0, batches: 4, seconds: 1.0, validation: None };
     for (file, bytes) in [
         (folder.join("experts.safetensors"), experts(&config, &positions)),
         // It was trained on no recording.

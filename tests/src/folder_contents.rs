@@ -58,7 +58,5 @@ pub fn assert_same(before: &Contents, after: &Contents) {
 pub fn half_written(folder: &Path) -> Vec<String> {
     let marks = [".writing-", ".report-", ".tmp"];
     let names = read(folder).into_keys().map(|name| name.display().to_string());
-    names
-        .filter(|name| marks.iter().any(|mark| name.contains(mark)))
-        .collect()
+    names.filter(|name| marks.iter().any(|mark| name.contains(mark))).collect()
 }

@@ -89,10 +89,7 @@ impl Golden {
         assert_eq!(self.weights.len(), stored.weights.len(), "{name}");
         for k in 0..stored.weights.len() {
             let (computed, expected) = (self.weights[k], stored.weights[k]);
-            assert!(
-                (computed - expected).abs() < LITTLE,
-                "{name}, weight {k}: {computed} {expected}"
-            );
+            assert!((computed - expected).abs() < LITTLE, "{name}, weight {k}: {computed} {expected}");
             for (what, computed, expected, off) in [
                 ("goal", &self.goals, &stored.goals, LITTLE),
                 ("step 1", &self.step_1, &stored.step_1, OFF),

@@ -144,10 +144,7 @@ fn script(commands: &[Command], is_begun: impl Fn(&Command) -> bool, notes: &Pat
             typed.to_owned()
         };
         // Formatting into a `String` cannot fail.
-        let _ = writeln!(
-            script,
-            "{{ {run}\n}} > {notes}/{i}.output 2>&1 < /dev/null\necho $? > {notes}/{i}.code"
-        );
+        let _ = writeln!(script, "{{ {run}\n}} > {notes}/{i}.output 2>&1 < /dev/null\necho $? > {notes}/{i}.code");
     }
     script
 }
@@ -155,9 +152,7 @@ fn script(commands: &[Command], is_begun: impl Fn(&Command) -> bool, notes: &Pat
 /// Checks that the packages, examples, benchmarks and tests named in a call of cargo exist.
 fn check_cargo(page: &str, command: &Command) {
     let place = format!("{page}:{}", command.line);
-    let words = command
-        .words()
-        .unwrap_or_else(|| panic!("{place}: not a plain call of cargo"));
+    let words = command.words().unwrap_or_else(|| panic!("{place}: not a plain call of cargo"));
     let after = |option: &str| words.iter().skip_while(|&&word| word != option).nth(1).copied();
     let package = after("-p").unwrap_or_else(|| panic!("{place}: no package is named"));
     let (folder, tests) = match package {

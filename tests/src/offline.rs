@@ -30,10 +30,7 @@ pub fn way() -> Option<Way> {
 /// Runs the program without a network.
 pub fn run(way: Way, place: &Place, line: &str) -> Finished {
     let mut command = program::undisturbed(Path::new(way[0]), place.path(), "");
-    let command = command
-        .args(&way[1..])
-        .arg(program::path())
-        .args(line.split_whitespace());
+    let command = command.args(&way[1..]).arg(program::path()).args(line.split_whitespace());
     let output = command.output().expect("`unshare` can be started");
     Finished::new(format!("without a network: ddl {line}"), &output)
 }

@@ -54,12 +54,7 @@ impl Finished {
     /// The result of a finished process.
     pub fn new(command: String, output: &Output) -> Self {
         let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
-        Self {
-            command,
-            code: output.status.code(),
-            stdout: text(&output.stdout),
-            stderr: text(&output.stderr),
-        }
+        Self { command, code: output.status.code(), stdout: text(&output.stdout), stderr: text(&output.stderr) }
     }
 
     /// Asserts success, and returns the standard output.
@@ -83,19 +78,13 @@ impl Finished {
         let lines = self.stderr.split_inclusive('\n');
         let lines: String = lines.skip_while(|line| line.starts_with("note: ")).collect();
         let message = lines.strip_prefix("error: ").unwrap_or_default().trim_end();
-        assert!(
-            !message.is_empty() && message.lines().count() == 1,
-            "not one error message: {self:#?}"
-        );
+        assert!(!message.is_empty() && message.lines().count() == 1, "not one error message: {self:#?}");
         for trace in ["panicked at", "RUST_BACKTRACE", "stack backtrace"] {
             assert!(!message.contains(trace), "{self:#?}");
         }
         let mut parts: Vec<&str> = message.split(": ").collect();
         parts.sort_unstable();
-        assert!(
-            parts.windows(2).all(|pair| pair[0] != pair[1]),
-            "repeated text: {self:#?}"
-        );
+        assert!(parts.windows(2).all(|pair| pair[0] != pair[1]), "repeated text: {self:#?}");
         message.to_owned()
     }
 }
@@ -103,11 +92,8 @@ impl Finished {
 /// The path of the program. It is built with libtorch if these tests are (feature `torch`), otherwise without.
 pub fn path() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
-    let target: &[&str] = if cfg!(feature = "torch") {
-        &["-p", "ddl-cli", "--features", "torch"]
-    } else {
-        &["-p", "ddl-cli"]
-    };
+    let target: &[&str] =
+        if cfg!(feature = "torch") { &["-p", "ddl-cli", "--features", "torch"] } else { &["-p", "ddl-cli"] };
     PATH.get_or_init(|| {
         let path = built(Path::new("ddl"), target);
         if is_with_torch(&path) != cfg!(feature = "torch") {

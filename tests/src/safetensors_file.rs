@@ -7,9 +7,7 @@ use serde_json::Value;
 /// # Errors
 /// Text that describes the defect.
 pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
-    let (length, rest) = bytes
-        .split_first_chunk::<8>()
-        .ok_or("shorter than the length of a header")?;
+    let (length, rest) = bytes.split_first_chunk::<8>().ok_or("shorter than the length of a header")?;
     let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|error| error.to_string())?;
     let (header, numbers) = rest.split_at_checked(length).ok_or("ends within its header")?;
     let header: Value = serde_json::from_slice(header).map_err(|error| error.to_string())?;

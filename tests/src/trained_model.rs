@@ -113,11 +113,8 @@ fn request(out: &Path) -> TrainingRequest {
     let config = drawn_model::config(Variant::Full);
     let mut request = TrainingRequest::recommended(config.data.fold, RunDirectory::new(out));
     request.star = config.star;
-    request.training = TrainingConfig {
-        pedestrians_per_epoch: Some(PEDESTRIANS),
-        batch_pedestrians: BATCH,
-        ..config.training
-    };
+    request.training =
+        TrainingConfig { pedestrians_per_epoch: Some(PEDESTRIANS), batch_pedestrians: BATCH, ..config.training };
     request.goals = config.goals;
     request.commit = config.commit;
     request

@@ -11,10 +11,7 @@ fn main() -> Result<()> {
     };
     let bindgen = || {
         let mut bindgen = Bindgen::new();
-        bindgen
-            .input_path(module)
-            .remove_name_section(true)
-            .omit_default_module_path(false);
+        bindgen.input_path(module).remove_name_section(true).omit_default_module_path(false);
         bindgen
     };
     bindgen().web(true)?.typescript(true).generate(package)?;

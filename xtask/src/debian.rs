@@ -16,10 +16,7 @@ pub(crate) fn ensure_program(program: &str, packages: &[&str]) -> Result<()> {
     let advice = || format!("{program} is missing: install it, on Debian with `apt install {wanted}`");
     let is_root = read(Command::new("id").arg("-u")).is_ok_and(|user| user.trim() == "0");
     ensure!(is_root && find_on_path(OsStr::new("apt-get")).is_some(), "{}", advice());
-    for arguments in [
-        &["update"][..],
-        &[&["install", "-y", "--no-install-recommends"], packages].concat(),
-    ] {
+    for arguments in [&["update"][..], &[&["install", "-y", "--no-install-recommends"], packages].concat()] {
         let mut command = Command::new("apt-get");
         command
             .args(["-qq", "-o", "Acquire::Retries=3", "-o", "DPkg::Lock::Timeout=120"])

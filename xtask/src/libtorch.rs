@@ -47,11 +47,7 @@ pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> 
     let generated = workspace.path(config::GENERATED);
     let (folder, origin) = choose(&generated, request)?;
     let reconfigured = config::write(&generated, &folder)?;
-    Ok(Ready {
-        folder,
-        origin,
-        reconfigured,
-    })
+    Ok(Ready { folder, origin, reconfigured })
 }
 
 fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, &'static str)> {

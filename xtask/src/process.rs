@@ -40,9 +40,7 @@ pub(crate) fn shown(command: &Command) -> String {
     let words: Vec<String> = words.map(|word| word.display().to_string()).collect();
     let line = words.join(" ");
     let line = line.lines().next().unwrap_or_default().to_owned();
-    line.char_indices()
-        .nth(200)
-        .map_or(line.clone(), |(end, _)| format!("{} ...", &line[..end]))
+    line.char_indices().nth(200).map_or(line.clone(), |(end, _)| format!("{} ...", &line[..end]))
 }
 
 /// The program of this name on the search path (or the path itself, if it is one).
@@ -51,7 +49,5 @@ pub(crate) fn find_on_path(name: &OsStr) -> Option<PathBuf> {
         return Path::new(name).is_file().then(|| name.into());
     }
     let path = env::var_os("PATH")?;
-    env::split_paths(&path)
-        .map(|folder| folder.join(name))
-        .find(|program| program.is_file())
+    env::split_paths(&path).map(|folder| folder.join(name)).find(|program| program.is_file())
 }

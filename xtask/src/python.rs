@@ -25,10 +25,7 @@ impl Python {
             find_on_path(&python.program).is_some(),
             "Python 3 is missing ({shown} is not on the search path): {advice}"
         );
-        ensure!(
-            read(&mut python.call(["-c", "import pip"])).is_ok(),
-            "pip is missing from {shown}: {advice}"
-        );
+        ensure!(read(&mut python.call(["-c", "import pip"])).is_ok(), "pip is missing from {shown}: {advice}");
         Ok(python)
     }
 

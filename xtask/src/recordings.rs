@@ -63,10 +63,7 @@ impl Manifest {
         match convention {
             "star" => Ok(&self.star),
             "social-gan" => Ok(&self.social_gan),
-            _ => bail!(
-                "no recordings of {convention:?} can be fetched: name one of {}",
-                RECORDED.join(", ")
-            ),
+            _ => bail!("no recordings of {convention:?} can be fetched: name one of {}", RECORDED.join(", ")),
         }
     }
 }
@@ -122,9 +119,7 @@ impl Entry {
             self.check(&folder)?;
             return Ok(folder);
         }
-        let folder = data
-            .map_or_else(|| Ok(workspace.path(FETCHED)), absolute)?
-            .join(convention);
+        let folder = data.map_or_else(|| Ok(workspace.path(FETCHED)), absolute)?.join(convention);
         let source = self.fetch(convention, &folder)?;
         eprintln!("{convention}: fetched from {source}");
         Ok(folder)

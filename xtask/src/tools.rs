@@ -68,9 +68,7 @@ impl Tools {
     /// Python with the packages of these.
     pub(crate) fn python(&self, script: &Path) -> Command {
         let mut command = self.python.call([script]);
-        command
-            .env("PYTHONPATH", &self.folder)
-            .env("PYTHONDONTWRITEBYTECODE", "1");
+        command.env("PYTHONPATH", &self.folder).env("PYTHONDONTWRITEBYTECODE", "1");
         command
     }
 }

@@ -98,8 +98,7 @@ fn variables_to_remove() -> Vec<OsString> {
         }
     });
     let leaking = env::vars_os().map(|(name, _)| name).filter(|name| {
-        name.to_str()
-            .is_some_and(|text| LEAKING_PREFIXES.iter().any(|prefix| text.starts_with(prefix)))
+        name.to_str().is_some_and(|text| LEAKING_PREFIXES.iter().any(|prefix| text.starts_with(prefix)))
     });
     // The generated configuration has the same LIBTORCH. Without the variable, a plain `cargo build` and one started
     // here see the same environment, and nothing is rebuilt.

@@ -28,10 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Ok(());
     };
     // On the calling thread, as the library.
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .use_current_thread()
-        .build_global()?;
+    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global()?;
     let tracks: Vec<Vec<Position>> = (0..PEDESTRIANS).map(track).collect();
     let flat = tracks.concat();
     let ids = (0..PEDESTRIANS as i64).map(PedestrianId).collect();

@@ -103,10 +103,9 @@ impl Answer {
     /// Leaves the stored forecast as it is, and marks it as older than the last frame.
     pub(crate) fn keep(&mut self, notes: &Notes<'_>) {
         self.misfits.clear();
-        self.misfits.extend(notes.misfits.iter().map(|misfit| ddl_misfit {
-            id: misfit.pedestrian.0,
-            distance: misfit.distance,
-        }));
+        self.misfits.extend(
+            notes.misfits.iter().map(|misfit| ddl_misfit { id: misfit.pedestrian.0, distance: misfit.distance }),
+        );
         self.warning = c_text(notes.warning.as_deref().unwrap_or_default());
         self.view.due = false;
         self.view.misfits = address(&self.misfits);
@@ -125,14 +124,11 @@ impl Answer {
         self.numbers.add(qualities().map(ObservationQuality::uncertainty));
         self.numbers.add(paths.copied().flatten());
         self.numbers.add(pairs(forecast).map(|(i, k)| forecast.weight(i, k)));
-        self.numbers
-            .add(pairs(forecast).filter_map(|(i, k)| forecast.goal(i, k)).flatten());
-        self.numbers
-            .add((0..window.len()).filter_map(|i| forecast.familiarity(i)));
+        self.numbers.add(pairs(forecast).filter_map(|(i, k)| forecast.goal(i, k)).flatten());
+        self.numbers.add((0..window.len()).filter_map(|i| forecast.familiarity(i)));
         let spread = |i| (0..HORIZON).filter_map(move |t| forecast.scale(i, t));
         self.numbers.add((0..window.len()).flat_map(spread));
-        self.certified
-            .extend(pairs(forecast).filter_map(|(i, k)| forecast.certified(i, k)));
+        self.certified.extend(pairs(forecast).filter_map(|(i, k)| forecast.certified(i, k)));
     }
 
     /// Radii `[N][K][12]` of the discs around the hypotheses in the region of a level; NaN where there is none.
@@ -143,9 +139,7 @@ impl Answer {
         let none = || Failure::invalid("the hypotheses of this model have no weights, and so no regions");
         let [low, high] = forecast.regions().ok_or_else(none)?.range();
         if !(low..=high).contains(&level) {
-            return Err(Failure::invalid(format!(
-                "level is {level}; it must be a probability from {low} to {high}"
-            )));
+            return Err(Failure::invalid(format!("level is {level}; it must be a probability from {low} to {high}")));
         }
         let steps = pairs(forecast).flat_map(|(i, k)| (0..HORIZON).map(move |t| (i, k, t)));
         let radius = |(i, k, t)| forecast.region_radius(i, k, t, level).unwrap_or(f64::NAN);
@@ -184,14 +178,7 @@ impl Answer {
         numbers.add(risks.iter().flat_map(|risk| risk.until));
         let [total, of_each, steps, until] = numbers.arrays();
         let (plans, pedestrians) = (plans.len(), futures.pedestrians());
-        self.risks = ddl_risks {
-            plans,
-            pedestrians,
-            total,
-            of_each,
-            steps,
-            until,
-        };
+        self.risks = ddl_risks { plans, pedestrians, total, of_each, steps, until };
         Ok(())
     }
 
@@ -211,9 +198,7 @@ impl Answer {
         let [width, height] = area.size();
         area.ensure_kept(times.len()).map_err(Failure::invalid)?;
         threads.run(|| {
-            let grids = futures
-                .occupancy(&area, &times, cells.radius)
-                .map_err(Failure::invalid)?;
+            let grids = futures.occupancy(&area, &times, cells.radius).map_err(Failure::invalid)?;
             // After an error the last grids are still there.
             self.probabilities.clear();
             self.probabilities.extend(grids.flat_map(|grid| grid.probabilities));
@@ -248,9 +233,5 @@ fn pairs(forecast: &Forecast) -> impl Iterator<Item = (usize, usize)> + use<> {
 }
 
 fn address<T>(values: &[T]) -> *const T {
-    if values.is_empty() {
-        ptr::null()
-    } else {
-        values.as_ptr()
-    }
+    if values.is_empty() { ptr::null() } else { values.as_ptr() }
 }

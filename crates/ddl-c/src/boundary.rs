@@ -46,9 +46,7 @@ pub(crate) fn guarded(work: impl FnOnce() -> Result<(), Failure>) -> ddl_status 
         Ok(Err(failure)) => failure,
         Err(panic) => {
             let words = panic.downcast_ref::<String>().map(String::as_str);
-            let words = words
-                .or_else(|| panic.downcast_ref::<&str>().copied())
-                .unwrap_or_default();
+            let words = words.or_else(|| panic.downcast_ref::<&str>().copied()).unwrap_or_default();
             Failure(ddl_status::DEFECT, format!("a defect of the library: {words}"))
         }
     };
@@ -73,9 +71,7 @@ pub(crate) unsafe fn values<'a, T>(first: *const T, count: usize, name: &str) ->
     needed((!first.is_null()).then_some(()), name)?;
     let bytes = size_of::<T>().checked_mul(count);
     if bytes.is_none_or(|bytes| bytes > isize::MAX as usize) || !first.is_aligned() {
-        return Err(Failure::invalid(format!(
-            "{name}: no {count} values are at this address"
-        )));
+        return Err(Failure::invalid(format!("{name}: no {count} values are at this address")));
     }
     // SAFETY: not null, aligned, of a size that exists; the rest is the caller's.
     Ok(unsafe { std::slice::from_raw_parts(first, count) })
@@ -91,6 +87,5 @@ pub(crate) unsafe fn text<'a>(first: *const c_char, name: &str) -> Result<Option
     }
     // SAFETY: not null; the rest is the caller's.
     let text = unsafe { CStr::from_ptr(first) }.to_str();
-    text.map(Some)
-        .map_err(|_| Failure::invalid(format!("{name} is not UTF-8")))
+    text.map(Some).map_err(|_| Failure::invalid(format!("{name} is not UTF-8")))
 }

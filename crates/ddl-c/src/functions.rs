@@ -1,10 +1,7 @@
 //! The functions of `ddl.h`. Pointers to one value are references of Rust here, null being `None`.
 
 #![allow(unsafe_code, reason = "functions of C")]
-#![allow(
-    clippy::missing_safety_doc,
-    reason = "`ddl.h` begins with what holds for all pointers"
-)]
+#![allow(clippy::missing_safety_doc, reason = "`ddl.h` begins with what holds for all pointers")]
 
 use crate::answer::Notes;
 use crate::boundary::{Failure, guarded, last_error, needed, text, values};
@@ -100,13 +97,9 @@ pub unsafe extern "C" fn ddl_model_forecast(
         if let Request::Joint(Some(GivenPlan { ego: Some(ego), .. })) = &request
             && window.named(ego).is_none()
         {
-            return Err(Failure::invalid(format!(
-                "ego is {ego}, but no such pedestrian is given"
-            )));
+            return Err(Failure::invalid(format!("ego is {ego}, but no such pedestrian is given")));
         }
-        forecast
-            .0
-            .hold(Some(model.forecast(window, &request)?), &Notes::default());
+        forecast.0.hold(Some(model.forecast(window, &request)?), &Notes::default());
         Ok(())
     })
 }
@@ -123,9 +116,7 @@ pub unsafe extern "C" fn ddl_live_new(
         let options = options.unwrap_or_default();
         // SAFETY: a text of the caller.
         let memory = unsafe { text(options.memory, "memory")? };
-        live.write(Box::into_raw(Box::new(ddl_live(Live::new(
-            &model.0, &options, memory,
-        )?))));
+        live.write(Box::into_raw(Box::new(ddl_live(Live::new(&model.0, &options, memory)?))));
         Ok(())
     })
 }
@@ -147,9 +138,7 @@ pub unsafe extern "C" fn ddl_live_observe(
         let (live, forecast) = (&needed(live, "live")?.0, &mut needed(forecast, "forecast")?.0);
         // SAFETY: rows of the caller, and those of a plan.
         let (rows, request) = unsafe { (values(observations, count, "observations")?, asked(request)?) };
-        let seen = rows
-            .iter()
-            .map(|row| (PedestrianId(row.id), [row.position.x, row.position.y]));
+        let seen = rows.iter().map(|row| (PedestrianId(row.id), [row.position.x, row.position.y]));
         live.observe(at, seen.collect(), &request, forecast)
     })
 }
@@ -212,9 +201,7 @@ pub unsafe extern "C" fn ddl_forecast_risks(
     guarded(|| {
         let (forecast, risks) = (&mut needed(forecast, "forecast")?.0, needed(risks, "risks")?);
         // SAFETY: plans of the caller, with their rows.
-        let plans = unsafe { values(plans, count, "plans")? }
-            .iter()
-            .map(|plan| unsafe { planned(plan) });
+        let plans = unsafe { values(plans, count, "plans")? }.iter().map(|plan| unsafe { planned(plan) });
         forecast.compute_risks(&plans.collect::<Result<Vec<_>, _>>()?, within, ego.copied(), !unseen)?;
         risks.write(&raw const forecast.risks);
         Ok(())
@@ -249,11 +236,7 @@ unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, Failure> {
     }
     if !request.joint {
         let words = "only joint futures respond to a plan: set joint, or leave out the plan";
-        return if is_planned {
-            Err(Failure::invalid(words))
-        } else {
-            Ok(Request::Hypotheses)
-        };
+        return if is_planned { Err(Failure::invalid(words)) } else { Ok(Request::Hypotheses) };
     }
     // SAFETY: the caller's.
     let plan = is_planned.then(|| unsafe { planned(&request.plan) }).transpose()?;

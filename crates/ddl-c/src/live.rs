@@ -64,9 +64,7 @@ impl Live {
         let failed = |error: DdlError| Failure::invalid(format!("at {at}{unit}: {error}"));
         let mut place = self.held();
         let place = &mut *place;
-        let made = self
-            .threads
-            .run(|| place.push(frame as i64, seen, request).map_err(failed))?;
+        let made = self.threads.run(|| place.push(frame as i64, seen, request).map_err(failed))?;
         let held = made.map(|now| Held {
             window: now.window,
             forecast: now.forecast,
@@ -105,17 +103,9 @@ impl Live {
 }
 
 fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, Failure> {
-    let ddl_live_options {
-        rate,
-        whole,
-        every,
-        max_age,
-        ..
-    } = *options;
+    let ddl_live_options { rate, whole, every, max_age, .. } = *options;
     if !(rate >= 0.0 && rate.is_finite()) {
-        return Err(Failure::invalid(format!(
-            "rate is {rate}; it must be frames per second, or 0 for times"
-        )));
+        return Err(Failure::invalid(format!("rate is {rate}; it must be frames per second, or 0 for times")));
     }
     let clock = match rate {
         0.0 => Clock::with_stamps(TimeUnit::Seconds),

@@ -40,33 +40,15 @@ fn live_tracks_have_the_bits_of_the_facade() {
     };
     ddl_model_free(Some(model));
     for tick in 0..30 {
-        let rows = seen(tick).map(|(id, [x, y])| ddl_observation {
-            id: id.0,
-            position: ddl_point { x, y },
-        });
-        let request = ddl_request {
-            joint: tick % 3 == 2,
-            ..ddl_request::default()
-        };
+        let rows = seen(tick).map(|(id, [x, y])| ddl_observation { id: id.0, position: ddl_point { x, y } });
+        let request = ddl_request { joint: tick % 3 == 2, ..ddl_request::default() };
         let at = 0.1 * f64::from(tick);
         // SAFETY: rows of this function.
-        let status = unsafe {
-            ddl_live_observe(
-                Some(&live),
-                at,
-                rows.as_ptr(),
-                PEOPLE,
-                Some(&request),
-                Some(&mut forecast),
-            )
-        };
+        let status =
+            unsafe { ddl_live_observe(Some(&live), at, rows.as_ptr(), PEOPLE, Some(&request), Some(&mut forecast)) };
         assert_eq!(status, ddl_status::OK);
         let (frame, seen) = (i64::from(tick) * 100_000, seen(tick));
-        let now = if request.joint {
-            expected.push_joint(frame, seen, None)
-        } else {
-            expected.push(frame, seen)
-        };
+        let now = if request.joint { expected.push_joint(frame, seen, None) } else { expected.push(frame, seen) };
         let view = ddl_forecast_view(Some(&forecast)).unwrap();
         let Some(now) = now.unwrap() else {
             assert_eq!((tick, view.pedestrians), (0, 0));

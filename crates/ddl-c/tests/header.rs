@@ -16,8 +16,5 @@ fn the_header_is_that_of_the_sources() {
         std::fs::write(&path, &made).unwrap();
     }
     let committed = std::fs::read(&path).unwrap();
-    assert!(
-        committed == made,
-        "include/ddl.h is old: DDL_WRITE_HEADER=1 cargo test -p ddl-c --test header"
-    );
+    assert!(committed == made, "include/ddl.h is old: DDL_WRITE_HEADER=1 cargo test -p ddl-c --test header");
 }

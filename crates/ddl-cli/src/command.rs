@@ -185,9 +185,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         recordings::tell_notes(&read);
         recordings::tell_ticks(&read);
         recordings::warn_of_implausible(&read);
-        return Ok(Dataset::own(
-            read.into_iter().map(|read| read.timed.recording).collect(),
-        )?);
+        return Ok(Dataset::own(read.into_iter().map(|read| read.timed.recording).collect())?);
     }
     if units.are_given() {
         bail!(
@@ -203,12 +201,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
 }
 
 fn ensure_no_files(data: Option<&Path>) -> anyhow::Result<()> {
-    data.map_or(Ok(()), |data| {
-        bail!(
-            "--data {} has no effect: the simulated crowd has no files",
-            data.display()
-        )
-    })
+    data.map_or(Ok(()), |data| bail!("--data {} has no effect: the simulated crowd has no files", data.display()))
 }
 
 fn folder(convention: Convention, data: Option<&Path>) -> anyhow::Result<PathBuf> {

@@ -49,10 +49,6 @@ impl Interrupt {
     }
 
     pub(crate) fn flow(&self) -> ControlFlow<()> {
-        if self.wishes() > 0 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        if self.wishes() > 0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

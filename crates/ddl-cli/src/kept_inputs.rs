@@ -50,17 +50,10 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         for path in paths {
             // `-` is standard input or output.
             let is_standard = path == Path::new("-");
-            ensure!(
-                !is_standard || !NO_TEXTS.contains(&id),
-                "{option} - is no path: give that of a file or folder"
-            );
+            ensure!(!is_standard || !NO_TEXTS.contains(&id), "{option} - is no path: give that of a file or folder");
             if !is_standard {
                 let (option, path) = (option.clone(), path.clone());
-                let side = if OUTPUTS.contains(&id) {
-                    &mut outputs
-                } else {
-                    &mut inputs
-                };
+                let side = if OUTPUTS.contains(&id) { &mut outputs } else { &mut inputs };
                 side.push(Named { option, path });
             }
         }
@@ -73,11 +66,7 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
             && !folder.as_os_str().is_empty()
             && !folder.is_dir()
         {
-            bail!(
-                "{}: the folder {} does not exist; create it first",
-                output.option,
-                folder.display()
-            );
+            bail!("{}: the folder {} does not exist; create it first", output.option, folder.display());
         }
         if ["evaluate", "report", "benchmark"].contains(&name) {
             ensure_no_other_run(output, &inputs)?;
@@ -127,10 +116,7 @@ fn standing_inputs(matches: &ArgMatches) -> impl Iterator<Item = Named> {
     let folders = folders.map(|folder| ("the recordings of ETH/UCY", folder));
     let standard = Some(PathBuf::from("/dev/stdin")).filter(|standard| standard.is_file());
     let inputs = folders.chain(standard.map(|path| ("standard input", path)));
-    inputs.map(|(option, path)| Named {
-        option: option.to_owned(),
-        path,
-    })
+    inputs.map(|(option, path)| Named { option: option.to_owned(), path })
 }
 
 /// The input that writing to `output` would replace.

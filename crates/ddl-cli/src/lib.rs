@@ -60,9 +60,8 @@ enum Command {
 /// exit code 2, `--help` and `--version` with 0.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
     let matches = Cli::command().get_matches_from(arguments);
-    let command = Cli::from_arg_matches(&matches)
-        .unwrap_or_else(|error| error.format(&mut Cli::command()).exit())
-        .command;
+    let command =
+        Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut Cli::command()).exit()).command;
     let kept = kept_inputs::ensure_kept(&Cli::command(), &matches);
     match kept.and_then(|()| run_command(command)) {
         Ok(()) => 0,

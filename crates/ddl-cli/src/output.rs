@@ -54,9 +54,7 @@ pub(crate) fn write_file(path: &Path, write: impl FnOnce(&mut File) -> anyhow::R
 
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
-    out.write_all(text.as_bytes())
-        .and_then(|()| out.flush())
-        .context("cannot write to standard output")
+    out.write_all(text.as_bytes()).and_then(|()| out.flush()).context("cannot write to standard output")
 }
 
 /// A coordinate in tables, rounded to 0.1 mm; or a time, rounded to 0.1 ms.

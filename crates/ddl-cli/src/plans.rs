@@ -32,10 +32,9 @@ impl GivenPlanOptions {
         let mut plans = read_plans(path)?;
         let name = path.display();
         match (plans.pop(), plans.len()) {
-            (Some(NamedPlan { plan, .. }), 0) => Ok(Some(GivenPlan {
-                plan,
-                ego: self.ego.as_deref().map(PedestrianName::of_text),
-            })),
+            (Some(NamedPlan { plan, .. }), 0) => {
+                Ok(Some(GivenPlan { plan, ego: self.ego.as_deref().map(PedestrianName::of_text) }))
+            }
             (_, others) => bail!("{name} holds {} plans; the pedestrians can respond to one", others + 1),
         }
     }
@@ -93,14 +92,8 @@ struct Row {
 pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
     let name = path.display();
     let text = small_file::read(path)?;
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_reader(text.as_bytes());
-    let headers = reader
-        .headers()
-        .with_context(|| format!("cannot read the plan {name}"))?
-        .clone();
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
+    let headers = reader.headers().with_context(|| format!("cannot read the plan {name}"))?.clone();
     for column in ["t", "x", "y"] {
         if !headers.iter().any(|header| header == column) {
             bail!(
@@ -111,19 +104,12 @@ pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
     }
     let known = ["t", "x", "y", "radius", "plan"];
     if let Some(other) = headers.iter().find(|header| !known.contains(header)) {
-        bail!(
-            "{name}, line 1: unknown column `{other}`; a plan has the columns {}",
-            known.join(", ")
-        );
+        bail!("{name}, line 1: unknown column `{other}`; a plan has the columns {}", known.join(", "));
     }
     let mut plans: Vec<(String, Vec<PlanPoint>)> = Vec::new();
     for row in reader.deserialize() {
         let Row { plan, t, x, y, radius } = row.with_context(|| format!("{name}"))?;
-        let point = PlanPoint {
-            time: t,
-            position: [x, y],
-            radius: radius.unwrap_or(0.0),
-        };
+        let point = PlanPoint { time: t, position: [x, y], radius: radius.unwrap_or(0.0) };
         let is_new = plans.last().is_none_or(|(last, _)| *last != plan);
         if is_new && plans.iter().any(|(earlier, _)| *earlier == plan) {
             bail!("{name}: the rows of the plan `{plan}` do not stand together; sort the file by plan, then t");
@@ -137,16 +123,9 @@ pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
         bail!("{name} holds no rows; a plan has at least one row of t,x,y");
     }
     let checked = plans.into_iter().map(|(plan, points)| {
-        let of = if plan.is_empty() {
-            String::new()
-        } else {
-            format!(", plan `{plan}`")
-        };
+        let of = if plan.is_empty() { String::new() } else { format!(", plan `{plan}`") };
         let checked = Plan::new(points).with_context(|| format!("{name}{of}"))?;
-        Ok(NamedPlan {
-            name: plan,
-            plan: checked,
-        })
+        Ok(NamedPlan { name: plan, plan: checked })
     });
     checked.collect()
 }

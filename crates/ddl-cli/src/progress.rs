@@ -43,22 +43,13 @@ pub(crate) struct ProgressLine<'a> {
 impl Progress {
     pub(crate) fn new(stage: &'static str, mode: ProgressMode) -> Self {
         let visible = mode == ProgressMode::Auto && std::io::stderr().is_terminal();
-        let bar = if visible {
-            ProgressBar::new(0)
-        } else {
-            ProgressBar::hidden()
-        };
+        let bar = if visible { ProgressBar::new(0) } else { ProgressBar::hidden() };
         let style = ProgressStyle::with_template("{prefix:>9} [{bar:32}] {pos}/{len} {elapsed} (left {eta}) {msg}");
         // the template is a valid constant, so the default is never used
         let style = style.unwrap_or_else(|_| ProgressStyle::default_bar());
         bar.set_style(style.progress_chars("=> "));
         bar.set_prefix(stage);
-        Self {
-            stage,
-            mode,
-            bar,
-            last_line: Cell::new(Instant::now()),
-        }
+        Self { stage, mode, bar, last_line: Cell::new(Instant::now()) }
     }
 
     pub(crate) fn tell(&self, done: u64, total: u64, message: &str) {
@@ -73,12 +64,7 @@ impl Progress {
         }
         if self.mode == ProgressMode::Json {
             let (stage, message) = (self.stage.into(), message.into());
-            let line = serde_json::to_string(&ProgressLine {
-                stage,
-                done,
-                total,
-                message,
-            });
+            let line = serde_json::to_string(&ProgressLine { stage, done, total, message });
             if let Ok(line) = line {
                 // a closed output must not stop the work
                 let _ = writeln!(std::io::stdout(), "{line}");

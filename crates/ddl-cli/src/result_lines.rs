@@ -44,10 +44,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
             _ => "pedestrians",
         };
         let counts = counted.len();
-        writeln!(
-            out,
-            "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}"
-        )?;
+        writeln!(out, "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}")?;
         // The subset is the same for all rows, because they were evaluated together.
         if let Some(subset) = &first.conditions.test_subset {
             writeln!(out, "{subset}")?;
@@ -92,11 +89,7 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
     let counts = PEDESTRIAN_WINDOWS.len();
     let errors = |recording: &RecordingErrors| pair([recording.min_ade, recording.min_fde]);
     let beside = other.map_or("", |_| VELOCITY);
-    writeln!(
-        out,
-        "\n{:width$} {:>counts$}  {label:column$}  {beside}",
-        "recording", PEDESTRIAN_WINDOWS
-    )?;
+    writeln!(out, "\n{:width$} {:>counts$}  {label:column$}  {beside}", "recording", PEDESTRIAN_WINDOWS)?;
     for recording in &recordings {
         let same = of_other.iter().find(|other| other.recording == recording.recording);
         writeln!(

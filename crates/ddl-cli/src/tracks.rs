@@ -79,9 +79,7 @@ impl TrackOptions {
         }
         let observed = ObservedTracks::new((timed.recording, timed.clock), tracks, self.last);
         if !observed.has_common_frames && self.every.is_none() && !self.last {
-            tell(format_args!(
-                "note: {OWN_CLOCKS} (--every; of occupancy --moments-every)"
-            ));
+            tell(format_args!("note: {OWN_CLOCKS} (--every; of occupancy --moments-every)"));
         }
         if let Some(warning) = &observed.warning {
             recordings::warn_of(warning);

@@ -69,27 +69,16 @@ impl Units {
     /// These units. Units that neither options nor files give are taken from the training of the run, if it used own
     /// recordings.
     pub(crate) fn or_those_of(&self, run: &RunConfig) -> Self {
-        Self {
-            remembered: run.units.unwrap_or_default(),
-            ..self.clone()
-        }
+        Self { remembered: run.units.unwrap_or_default(), ..self.clone() }
     }
 
     pub(crate) fn told(&self) -> anyhow::Result<Option<TrackUnits>> {
-        let units = TrackUnits {
-            homography: self.homography()?,
-            ..self.rate()
-        };
+        let units = TrackUnits { homography: self.homography()?, ..self.rate() };
         Ok((units != TrackUnits::default()).then_some(units))
     }
 
     fn rate(&self) -> TrackUnits {
-        TrackUnits {
-            fps: self.fps,
-            dt: self.dt,
-            frame_step: self.frame_step,
-            homography: None,
-        }
+        TrackUnits { fps: self.fps, dt: self.dt, frame_step: self.frame_step, homography: None }
     }
 
     pub(crate) fn are_given(&self) -> bool {
@@ -172,9 +161,7 @@ impl Units {
         let recording = recording.with_name(&*name);
         let recording = match homography {
             None => recording,
-            Some(homography) => homography
-                .to_ground(&recording)
-                .with_context(|| file.display().to_string())?,
+            Some(homography) => homography.to_ground(&recording).with_context(|| file.display().to_string())?,
         };
         Ok((recording, format, topic))
     }
@@ -188,10 +175,7 @@ impl Units {
             bail!("only `ddl forecast -` reads standard input; give a file of tracks");
         }
         if file.is_dir() {
-            bail!(
-                "{} is a folder; give one of its files of tracks (`ddl data {0}` summarises each)",
-                file.display()
-            );
+            bail!("{} is a folder; give one of its files of tracks (`ddl data {0}` summarises each)", file.display());
         }
         let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
         let choice = self.choice(is_mapped)?;
@@ -210,10 +194,7 @@ impl Units {
             Some(Some(("class", class))) => Some(class.to_owned()),
             Some(_) => bail!("of MCAP, --keep chooses a class, as in --keep class=person"),
         };
-        Ok(move |class: &str| {
-            kept.as_ref()
-                .map_or(!is_vehicle(class), |kept| class.eq_ignore_ascii_case(kept))
-        })
+        Ok(move |class: &str| kept.as_ref().map_or(!is_vehicle(class), |kept| class.eq_ignore_ascii_case(kept)))
     }
 
     pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {

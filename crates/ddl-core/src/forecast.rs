@@ -69,18 +69,10 @@ impl Forecast {
         goals: Option<Vec<Position>>,
     ) -> Result<Self, ForecastShapeError> {
         if pedestrians == 0 || hypotheses == 0 {
-            return Err(ForecastShapeError::Empty {
-                pedestrians,
-                hypotheses,
-            });
+            return Err(ForecastShapeError::Empty { pedestrians, hypotheses });
         }
         let pairs = pedestrians * hypotheses;
-        check_length(
-            "positions",
-            "pedestrian, hypothesis, frame",
-            pairs * HORIZON,
-            positions.len(),
-        )?;
+        check_length("positions", "pedestrian, hypothesis, frame", pairs * HORIZON, positions.len())?;
         check_length("weights", "pedestrian, hypothesis", pairs, weights.len())?;
         check_finite("positions", &positions, HORIZON, hypotheses)?;
         check_finite("weights", weights.as_chunks::<1>().0, 1, hypotheses)?;
@@ -122,16 +114,8 @@ impl Forecast {
     /// # Errors
     /// The array has the wrong length.
     pub fn with_certified(self, certified: Vec<bool>) -> Result<Self, ForecastShapeError> {
-        check_length(
-            "certified",
-            "pedestrian, hypothesis",
-            self.pedestrians * self.hypotheses,
-            certified.len(),
-        )?;
-        Ok(Self {
-            certified: Some(certified),
-            ..self
-        })
+        check_length("certified", "pedestrian, hypothesis", self.pedestrians * self.hypotheses, certified.len())?;
+        Ok(Self { certified: Some(certified), ..self })
     }
 
     /// Adds the spread around the hypotheses, with the table of regions.
@@ -143,10 +127,7 @@ impl Forecast {
         check_length("spread", "pedestrian, frame", self.pedestrians * HORIZON, scales.len())?;
         check_length("pace", "pedestrian", self.pedestrians, paces.len())?;
         check_range("spread", scales, HORIZON, f64::MAX)?;
-        Ok(Self {
-            spread: Some(spread),
-            ..self
-        })
+        Ok(Self { spread: Some(spread), ..self })
     }
 
     /// Adds the familiarity of each pedestrian's observed motion, `[N]`, 0 to 1.
@@ -156,10 +137,7 @@ impl Forecast {
     pub fn with_familiarity(self, familiarity: Vec<f64>) -> Result<Self, ForecastShapeError> {
         check_length("familiarity", "pedestrian", self.pedestrians, familiarity.len())?;
         check_range("familiarity", &familiarity, 1, 1.0)?;
-        Ok(Self {
-            familiarity: Some(familiarity),
-            ..self
-        })
+        Ok(Self { familiarity: Some(familiarity), ..self })
     }
 
     /// Scale of Student's t (metres) of pedestrian `i`, `t` + 1 steps ahead, around the hypothesis that it follows, if
@@ -269,13 +247,7 @@ impl Forecast {
 
     /// The hypothesis of pedestrian `i` with the largest weight; of equal weights, the first.
     pub fn most_likely(&self, i: usize) -> usize {
-        (1..self.hypotheses).fold(0, |best, k| {
-            if self.weight(i, k) > self.weight(i, best) {
-                k
-            } else {
-                best
-            }
-        })
+        (1..self.hypotheses).fold(0, |best, k| if self.weight(i, k) > self.weight(i, best) { k } else { best })
     }
 
     /// Only the [representative](Self::representative) hypothesis of each pedestrian, with the weight 1.
@@ -316,10 +288,7 @@ impl Forecast {
                 paces: rows(&spread.paces, 1, pedestrians),
                 regions: Arc::clone(&spread.regions),
             }),
-            familiarity: self
-                .familiarity
-                .as_ref()
-                .map(|familiarity| rows(familiarity, 1, pedestrians)),
+            familiarity: self.familiarity.as_ref().map(|familiarity| rows(familiarity, 1, pedestrians)),
         }
     }
 
@@ -352,12 +321,7 @@ fn check_length(
     if expected == found {
         return Ok(());
     }
-    Err(ForecastShapeError::Length {
-        field,
-        layout,
-        expected,
-        found,
-    })
+    Err(ForecastShapeError::Length { field, layout, expected, found })
 }
 
 /// Whether all numbers are above 0 and at most `most`.
@@ -370,11 +334,9 @@ fn check_range(
     // False for NaN.
     match numbers.iter().position(|&x| !(x > 0.0 && x <= most)) {
         None => Ok(()),
-        Some(index) => Err(ForecastShapeError::OutOfRange {
-            field,
-            pedestrian: index / per_pedestrian,
-            value: numbers[index],
-        }),
+        Some(index) => {
+            Err(ForecastShapeError::OutOfRange { field, pedestrian: index / per_pedestrian, value: numbers[index] })
+        }
     }
 }
 
@@ -389,11 +351,7 @@ fn check_finite<const D: usize>(
         Some(index) => {
             let pair = index / per_pair;
             let (pedestrian, hypothesis) = (pair / hypotheses, pair % hypotheses);
-            Err(ForecastShapeError::NotFinite {
-                field,
-                pedestrian,
-                hypothesis,
-            })
+            Err(ForecastShapeError::NotFinite { field, pedestrian, hypothesis })
         }
     }
 }
@@ -402,11 +360,7 @@ fn check_weights(weights: &[f64], hypotheses: usize) -> Result<(), ForecastShape
     for (pedestrian, row) in weights.chunks_exact(hypotheses).enumerate() {
         for (hypothesis, &weight) in row.iter().enumerate() {
             if weight < 0.0 {
-                return Err(ForecastShapeError::NegativeWeight {
-                    pedestrian,
-                    hypothesis,
-                    weight,
-                });
+                return Err(ForecastShapeError::NegativeWeight { pedestrian, hypothesis, weight });
             }
         }
         let sum: f64 = row.iter().sum();

@@ -46,12 +46,7 @@ mod tests {
 
     #[test]
     fn paces_by_hand() {
-        let cases = [
-            (0.149, Pace::Standing),
-            (0.151, Pace::Slow),
-            (0.699, Pace::Slow),
-            (0.701, Pace::Walking),
-        ];
+        let cases = [(0.149, Pace::Standing), (0.151, Pace::Slow), (0.699, Pace::Slow), (0.701, Pace::Walking)];
         for (speed, pace) in cases {
             // Half a second for each of two steps.
             let step = 0.5 * speed;

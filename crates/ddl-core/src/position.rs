@@ -39,10 +39,7 @@ pub fn between(from: Position, to: Position, share: f64) -> Position {
 pub fn bounds(places: impl IntoIterator<Item = Position>) -> Option<[Position; 2]> {
     places.into_iter().fold(None, |bounds, place| {
         let [low, high] = bounds.unwrap_or([place; 2]);
-        Some([
-            [0, 1].map(|axis| low[axis].min(place[axis])),
-            [0, 1].map(|axis| high[axis].max(place[axis])),
-        ])
+        Some([[0, 1].map(|axis| low[axis].min(place[axis])), [0, 1].map(|axis| high[axis].max(place[axis]))])
     })
 }
 

@@ -70,10 +70,7 @@ impl RegionTable {
     /// `scores` `[3][pedestrians][12]`; `levels` ascending, in (0, 1), at least one. `None` otherwise.
     pub fn of(scores: &[&[[f64; HORIZON]]; Pace::ALL.len()], levels: &[f64]) -> Option<Self> {
         let [standing, slow, walking] = scores.map(|scores| split_conformal(scores, levels));
-        let columns = LevelQuantiles {
-            levels: levels.to_vec(),
-            quantiles: [standing?, slow?, walking?],
-        };
+        let columns = LevelQuantiles { levels: levels.to_vec(), quantiles: [standing?, slow?, walking?] };
         columns.try_into().ok()
     }
 
@@ -94,11 +91,7 @@ impl RegionTable {
         let before = after.saturating_sub(1);
         let [low, high] = [before, after].map(|row| quantiles[pace as usize][row][t]);
         let width = levels[after] - levels[before];
-        let share = if width > 0.0 {
-            (level - levels[before]) / width
-        } else {
-            0.0
-        };
+        let share = if width > 0.0 { (level - levels[before]) / width } else { 0.0 };
         Some(low + share * (high - low))
     }
 }
@@ -126,10 +119,7 @@ mod tests {
     #[test]
     fn quantiles_by_hand() {
         let scores: Vec<[f64; HORIZON]> = (1..=99).map(|s| [f64::from(s); HORIZON]).collect();
-        let tens = scores
-            .iter()
-            .map(|row| row.map(|score| 10.0 * score))
-            .collect::<Vec<_>>();
+        let tens = scores.iter().map(|row| row.map(|score| 10.0 * score)).collect::<Vec<_>>();
         let table = RegionTable::of(&[&tens, &scores, &scores], &[0.5, 0.9]).unwrap();
         for (level, expected) in [(0.5, 50.0), (0.9, 90.0), (0.7, 70.0)] {
             for (pace, factor) in Pace::ALL.into_iter().zip([10.0, 1.0, 1.0]) {

@@ -27,9 +27,7 @@ impl Forecast {
     /// the hypotheses.
     pub fn representative(&self, i: usize) -> usize {
         let weights: Vec<f64> = (0..self.hypotheses()).map(|k| self.weight(i, k)).collect();
-        medoid(&weights, |k, j| {
-            average_displacement(self.hypothesis(i, k), self.hypothesis(i, j))
-        })
+        medoid(&weights, |k, j| average_displacement(self.hypothesis(i, k), self.hypothesis(i, j)))
     }
 }
 
@@ -59,15 +57,10 @@ pub fn medoid(weights: &[f64], distance: impl Fn(usize, usize) -> f64) -> usize 
         .map(|k| {
             // Skipped, because a distance may be infinite, and 0 times infinity is NaN.
             let others = weights.iter().enumerate();
-            others
-                .filter(|&(j, &weight)| j != k && weight > 0.0)
-                .map(|(j, weight)| weight * distance(k, j))
-                .sum()
+            others.filter(|&(j, &weight)| j != k && weight > 0.0).map(|(j, weight)| weight * distance(k, j)).sum()
         })
         .collect();
     let least = errors.iter().copied().fold(f64::INFINITY, f64::min);
     let equals = (0..weights.len()).filter(|&k| errors[k] <= least + EQUAL);
-    equals
-        .reduce(|best, k| if weights[k] > weights[best] { k } else { best })
-        .unwrap_or(0)
+    equals.reduce(|best, k| if weights[k] > weights[best] { k } else { best }).unwrap_or(0)
 }

@@ -17,10 +17,7 @@ impl WeightedGoals {
     /// There are no goals, or not as many weights as goals.
     pub fn new(goals: Vec<Position>, weights: Vec<f64>) -> Result<Self, ForecastShapeError> {
         if goals.is_empty() {
-            return Err(ForecastShapeError::Empty {
-                pedestrians: 1,
-                hypotheses: 0,
-            });
+            return Err(ForecastShapeError::Empty { pedestrians: 1, hypotheses: 0 });
         }
         if goals.len() != weights.len() {
             return Err(ForecastShapeError::Length {
@@ -35,10 +32,7 @@ impl WeightedGoals {
 
     /// One certain goal (m).
     pub fn certain(goal: Position) -> Self {
-        Self {
-            goals: vec![goal],
-            weights: vec![1.0],
-        }
+        Self { goals: vec![goal], weights: vec![1.0] }
     }
 
     /// The goals, metres.

@@ -72,10 +72,7 @@ impl Window {
             return Err(WindowError::Count { pedestrians, tracks });
         }
         if !(is_frame_step(frame_step) && is_frame(start_frame)) {
-            return Err(WindowError::Frames {
-                start_frame,
-                frame_step,
-            });
+            return Err(WindowError::Frames { start_frame, frame_step });
         }
         let steps = tracks.first().ok_or(WindowError::Empty)?.len();
         let mut sorted = pedestrians.clone();
@@ -90,11 +87,7 @@ impl Window {
             }
             if let Some(index) = track.iter().position(|&place| !is_finite(place)) {
                 let position = track[index];
-                return Err(WindowError::NotFinite {
-                    pedestrian,
-                    index,
-                    position,
-                });
+                return Err(WindowError::NotFinite { pedestrian, index, position });
             }
         }
         let frames = (0..).map(|t| start_frame + t * frame_step).take(steps).collect();
@@ -156,14 +149,8 @@ impl Window {
     /// When there is another number of qualities than of pedestrians.
     #[must_use]
     pub fn with_qualities(mut self, qualities: Vec<ObservationQuality>) -> Self {
-        assert!(
-            qualities.is_empty() || qualities.len() == self.len(),
-            "{} qualities",
-            qualities.len()
-        );
-        let measured = qualities
-            .iter()
-            .all(|quality| *quality == ObservationQuality::default());
+        assert!(qualities.is_empty() || qualities.len() == self.len(), "{} qualities", qualities.len());
+        let measured = qualities.iter().all(|quality| *quality == ObservationQuality::default());
         self.qualities = if measured { Vec::new() } else { qualities };
         self
     }
@@ -307,11 +294,7 @@ impl Window {
     pub fn without_future(&self) -> Window {
         let scene = self.scene();
         let pedestrians = scene.iter().map(|(window, i)| window.pedestrians[*i]).collect();
-        let observed = scene
-            .iter()
-            .flat_map(|(window, i)| window.observed(*i))
-            .copied()
-            .collect();
+        let observed = scene.iter().flat_map(|(window, i)| window.observed(*i)).copied().collect();
         let window = self.of_same(self.frames[..OBSERVED].to_vec(), pedestrians, observed);
         window
             .with_qualities(scene.iter().map(|(window, i)| window.quality(*i)).collect())
@@ -329,9 +312,8 @@ impl Window {
     /// The pedestrians and bystanders: the window of each, and its index there.
     fn scene(&self) -> Vec<(&Window, usize)> {
         let windows = std::iter::once(self).chain(self.bystanders.as_deref());
-        let mut scene: Vec<(&Window, usize)> = windows
-            .flat_map(|window| (0..window.len()).map(move |i| (window, i)))
-            .collect();
+        let mut scene: Vec<(&Window, usize)> =
+            windows.flat_map(|window| (0..window.len()).map(move |i| (window, i))).collect();
         if self.bystanders.is_some() {
             scene.sort_by_key(|(window, i)| window.pedestrians[*i]);
         }

@@ -88,10 +88,7 @@ pub enum FrameNumber {
 
 impl Clock {
     /// Frames that are steps: 0.4 s each.
-    pub const STEPS: Self = Self {
-        count: Count::Frames { ticks: 1 },
-        frame_step: 1,
-    };
+    pub const STEPS: Self = Self { count: Count::Frames { ticks: 1 }, frame_step: 1 };
 
     /// Frames of which this number makes a step of 0.4 s, such as 10 at 25 frames a second.
     ///
@@ -101,10 +98,7 @@ impl Clock {
         if !is_frame_step(frame_step) {
             return Err(ClockError::FrameStep { found: frame_step });
         }
-        Ok(Self {
-            frame_step,
-            ..Self::STEPS
-        })
+        Ok(Self { frame_step, ..Self::STEPS })
     }
 
     /// Frames of so many seconds, such as 0.04 at 25 frames a second. A step that is a whole number of frames within
@@ -125,27 +119,18 @@ impl Clock {
         let fitting = counts.find_map(|ticks| Some((ticks, whole(frames * ticks as f64, FIT)?)));
         // A thousandth of a frame is always accurate enough.
         let (ticks, frame_step) = fitting.unwrap_or((MOST_TICKS, (frames * MOST_TICKS as f64).round() as i64));
-        Ok(Self {
-            count: Count::Frames { ticks },
-            frame_step,
-        })
+        Ok(Self { count: Count::Frames { ticks }, frame_step })
     }
 
     /// Time stamps, given in microseconds; printed in the unit of their column.
     #[must_use]
     pub fn with_stamps(unit: TimeUnit) -> Self {
-        Self {
-            count: Count::Stamps(unit),
-            frame_step: (TIME_STEP * STAMPS_A_SECOND as f64) as i64,
-        }
+        Self { count: Count::Stamps(unit), frame_step: (TIME_STEP * STAMPS_A_SECOND as f64) as i64 }
     }
 
     /// Ticks as frames; `frame_step` is in 1..=2^31.
     pub(crate) fn of_ticks(frame_step: i64) -> Self {
-        Self {
-            frame_step,
-            ..Self::STEPS
-        }
+        Self { frame_step, ..Self::STEPS }
     }
 
     /// Ticks per step of 0.4 s.
@@ -206,9 +191,7 @@ impl Clock {
         let number = self.number(tick);
         match self.count {
             Count::Frames { .. } => format!("frame {number}"),
-            Count::Stamps(unit) => unit
-                .a_second()
-                .map_or(number.to_string(), |(_, sign)| format!("{number} {sign}")),
+            Count::Stamps(unit) => unit.a_second().map_or(number.to_string(), |(_, sign)| format!("{number} {sign}")),
         }
     }
 
@@ -231,11 +214,7 @@ impl Clock {
 
 impl FrameNumber {
     fn of_parts(tick: i64, ticks: i64) -> Self {
-        if tick % ticks == 0 {
-            Self::Whole(tick / ticks)
-        } else {
-            Self::Between(tick as f64 / ticks as f64)
-        }
+        if tick % ticks == 0 { Self::Whole(tick / ticks) } else { Self::Between(tick as f64 / ticks as f64) }
     }
 
     /// The nearest whole number; seconds since 1970 for a date.

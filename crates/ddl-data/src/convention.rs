@@ -36,9 +36,7 @@ impl Convention {
     pub fn headline_rule(self) -> WindowRule {
         match self {
             Self::Star => WindowRule::Published,
-            Self::SocialGan => WindowRule::SocialGan {
-                min_pedestrians: SOCIAL_GAN_FEWEST,
-            },
+            Self::SocialGan => WindowRule::SocialGan { min_pedestrians: SOCIAL_GAN_FEWEST },
             Self::Simulated => WindowRule::Complete,
             Self::Own => WindowRule::Observed,
         }
@@ -115,10 +113,7 @@ struct Plans {
     simulated: ConventionPlan,
 }
 
-static NOTHING_PLANNED: ConventionPlan = ConventionPlan {
-    recordings: Vec::new(),
-    folds: Vec::new(),
-};
+static NOTHING_PLANNED: ConventionPlan = ConventionPlan { recordings: Vec::new(), folds: Vec::new() };
 
 static PLANS: LazyLock<Plans> = LazyLock::new(|| {
     // Cannot fail: the file is compiled in, and the tests below parse it.

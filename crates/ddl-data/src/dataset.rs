@@ -30,10 +30,7 @@ impl Dataset {
             let recording = read_recording(&folder.join(file), format)?
                 .with_name(planned.name.as_str())
                 .with_frame_step(planned.frame_step)
-                .map_err(|source| DataError::Recording {
-                    name: planned.name.clone(),
-                    source,
-                })?;
+                .map_err(|source| DataError::Recording { name: planned.name.clone(), source })?;
             recordings.push(recording);
         }
         Ok(Self { convention, recordings })
@@ -47,10 +44,7 @@ impl Dataset {
     /// not transfer to real pedestrians.
     #[must_use]
     pub fn simulated(seed: u64) -> Self {
-        Self {
-            convention: Convention::Simulated,
-            recordings: simulate::recordings(seed),
-        }
+        Self { convention: Convention::Simulated, recordings: simulate::recordings(seed) }
     }
 
     /// The user's own recordings, in steps of 0.4 s ([`Recording::on_clock`]). Each recording can be left out
@@ -80,9 +74,7 @@ impl Dataset {
         for (index, recording) in recordings.iter().enumerate() {
             let name = recording.name();
             if recordings[..index].iter().any(|other| other.name() == name) {
-                return problem(format!(
-                    "two recordings are called {name:?}; give one of the files another name"
-                ));
+                return problem(format!("two recordings are called {name:?}; give one of the files another name"));
             }
             if name == Fold::NO_HELD_OUT {
                 return problem(format!(
@@ -91,10 +83,7 @@ impl Dataset {
                 ));
             }
         }
-        Ok(Self {
-            convention: Convention::Own,
-            recordings,
-        })
+        Ok(Self { convention: Convention::Own, recordings })
     }
 
     /// The convention of all its recordings.
@@ -112,15 +101,12 @@ impl Dataset {
     /// # Errors
     /// If there is no such recording; the message lists the available ones.
     pub fn recording(&self, name: &str) -> Result<&Recording, DataError> {
-        self.recordings
-            .iter()
-            .find(|r| r.name() == name)
-            .ok_or_else(|| DataError::Unknown {
-                kind: "recording",
-                convention: self.convention.name(),
-                name: name.to_owned(),
-                known: self.recordings.iter().map(|r| r.name().to_owned()).collect(),
-            })
+        self.recordings.iter().find(|r| r.name() == name).ok_or_else(|| DataError::Unknown {
+            kind: "recording",
+            convention: self.convention.name(),
+            name: name.to_owned(),
+            known: self.recordings.iter().map(|r| r.name().to_owned()).collect(),
+        })
     }
 
     /// Names of the leave-one-out folds: eth, hotel, univ, zara1, zara2, or the simulated scenes, or the own

@@ -53,11 +53,7 @@ pub enum LiveError {
         "frame {frame}, pedestrian {pedestrian}: {position:?} is no position; x and y are finite, and within \
          {COORDINATE_LIMIT} m of the origin"
     )]
-    NoPosition {
-        pedestrian: PedestrianId,
-        frame: i64,
-        position: Position,
-    },
+    NoPosition { pedestrian: PedestrianId, frame: i64, position: Position },
     #[error(
         "more than {limit} pedestrians were seen within 2 s; does each keep its name from frame to frame, and is the \
          rate right?"
@@ -77,11 +73,7 @@ impl LiveError {
         if position.iter().all(|coordinate| coordinate.abs() <= COORDINATE_LIMIT) {
             return Ok(());
         }
-        Err(Self::NoPosition {
-            pedestrian,
-            frame,
-            position,
-        })
+        Err(Self::NoPosition { pedestrian, frame, position })
     }
 }
 
@@ -101,22 +93,13 @@ pub enum DataError {
          their folder in the environment variable {variable}",
         .searched.join(", ")
     )]
-    NotFound {
-        convention: &'static str,
-        searched: Vec<String>,
-        variable: &'static str,
-    },
+    NotFound { convention: &'static str, searched: Vec<String>, variable: &'static str },
     #[error("the {0} convention has no files of fixed names; use `Dataset::simulated` or `Dataset::own`")]
     NoFiles(&'static str),
     #[error("{problem}")]
     Own { problem: String },
     #[error("no {kind} {name:?} in the {convention} convention; it has {}", .known.join(", "))]
-    Unknown {
-        kind: &'static str,
-        convention: &'static str,
-        name: String,
-        known: Vec<String>,
-    },
+    Unknown { kind: &'static str, convention: &'static str, name: String, known: Vec<String> },
     #[error("{name:?} is not one of these recordings: {}", .known.join(", "))]
     NotATrainingRecording { name: String, known: Vec<String> },
 }

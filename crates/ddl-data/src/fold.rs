@@ -36,19 +36,10 @@ impl<'a> Fold<'a> {
         recordings: &'a [Recording],
         planned: Option<(&'static ConventionPlan, &'static FoldPlan)>,
     ) -> Self {
-        let test: Vec<_> = test_names
-            .iter()
-            .filter_map(|name| recordings.iter().find(|r| r.name() == name))
-            .collect();
+        let test: Vec<_> = test_names.iter().filter_map(|name| recordings.iter().find(|r| r.name() == name)).collect();
         let held_out = |r: &&Recording| test_names.iter().any(|name| name == r.name());
         let training = recordings.iter().filter(|r| !held_out(r)).collect();
-        Self {
-            name,
-            test,
-            training,
-            set_apart: Vec::new(),
-            planned,
-        }
+        Self { name, test, training, set_apart: Vec::new(), planned }
     }
 
     /// Keeps whole training recordings for validation; they are not used for training.
@@ -134,10 +125,7 @@ impl<'a> Fold<'a> {
     /// Recordings [set apart](Self::with_validation_recordings) are used for validation as a whole.
     #[must_use]
     pub fn training_split(&self, rule: WindowRule, validation_fraction: f64) -> TrainingSplit {
-        let mut split = TrainingSplit {
-            training: Vec::new(),
-            validation: Vec::new(),
-        };
+        let mut split = TrainingSplit { training: Vec::new(), validation: Vec::new() };
         for recording in &self.training {
             let frames = recording.frames();
             let cut = recording.cut_index(validation_fraction);

@@ -52,10 +52,7 @@ use crate::recording::Recording;
 /// # Errors
 /// If the file cannot be read, or its content is wrong: see [`FormatError`](crate::FormatError).
 pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataError> {
-    let bytes = std::fs::read(path).map_err(|source| DataError::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let bytes = std::fs::read(path).map_err(|source| DataError::Read { path: path.to_owned(), source })?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     Ok(parse_recording(&bytes, &path.display().to_string(), format)?.with_name(&*name))
 }
@@ -111,10 +108,7 @@ pub fn parse_columns(
 
 /// The observations of a file.
 fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFile, Misread> {
-    if let Some((_, problem)) = OTHERS
-        .iter()
-        .find(|(first, _)| first.iter().any(|first| bytes.starts_with(first)))
-    {
+    if let Some((_, problem)) = OTHERS.iter().find(|(first, _)| first.iter().any(|first| bytes.starts_with(first))) {
         return Err(FilePlace::line(1).wrong(*problem));
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
@@ -123,10 +117,7 @@ fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFi
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    if matches!(
-        format,
-        Format::StarCsv | Format::TrajNet | Format::Vsp | Format::Edinburgh
-    ) {
+    if matches!(format, Format::StarCsv | Format::TrajNet | Format::Vsp | Format::Edinburgh) {
         let allowed = choice.refuse_for(format);
         allowed.map_err(|problem| FilePlace::line(1).wrong(problem))?;
     }
@@ -134,11 +125,7 @@ fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFi
         Format::StarCsv => Ok(TextFile::without_columns(star_csv::parse(text)?, None, None)),
         Format::TrajNet => {
             let (rows, others) = trajnet::parse(text)?;
-            Ok(TextFile::without_columns(
-                rows,
-                others.filter.left_out(),
-                others.frames_a_second,
-            ))
+            Ok(TextFile::without_columns(rows, others.filter.left_out(), others.frames_a_second))
         }
         Format::Vsp => vsp::parse(text, choice),
         Format::Edinburgh => edinburgh::parse(text, choice),
@@ -170,12 +157,6 @@ const OTHERS: [(&[&[u8]], &str); 5] = [
         ],
         "the file is binary (SQLite, HDF5, numpy, MATLAB, pickle, bag or old Excel); write its tracks as csv first",
     ),
-    (
-        &[b"<?xml", b"<!", b"<html", b"<gpx", b"\xef\xbb\xbf<"],
-        "the file is XML or HTML; write its tracks as csv first",
-    ),
-    (
-        &[b"version https://git-lfs"],
-        "the file is a pointer of Git LFS; get its content with `git lfs pull`",
-    ),
+    (&[b"<?xml", b"<!", b"<html", b"<gpx", b"\xef\xbb\xbf<"], "the file is XML or HTML; write its tracks as csv first"),
+    (&[b"version https://git-lfs"], "the file is a pointer of Git LFS; get its content with `git lfs pull`"),
 ];

@@ -32,10 +32,7 @@ impl Recording {
     /// ```
     #[must_use]
     pub fn futures(&self) -> Futures<'_> {
-        Futures {
-            tracks: self.tracks(),
-            frame_step: self.frame_step(),
-        }
+        Futures { tracks: self.tracks(), frame_step: self.frame_step() }
     }
 }
 
@@ -48,9 +45,7 @@ impl Futures<'_> {
         let path = |pedestrian| {
             let track = self.tracks.get(pedestrian).map_or(&[][..], Vec::as_slice);
             let steps = 1..=HORIZON as i64;
-            steps
-                .map_while(|step| position_at(track, last + step * self.frame_step, self.frame_step))
-                .collect()
+            steps.map_while(|step| position_at(track, last + step * self.frame_step, self.frame_step)).collect()
         };
         window.pedestrians().iter().map(path).collect()
     }
@@ -59,10 +54,7 @@ impl Futures<'_> {
 /// The position of a track at a tick, of which `step` make 0.4 s: a row, or a point between rows.
 pub(crate) fn position_at(track: &[&Observation], tick: i64, step: i64) -> Option<Position> {
     let after = track.partition_point(|row| row.frame < tick);
-    let rows = [
-        after.checked_sub(1).map(|before| track[before]),
-        track.get(after).copied(),
-    ];
+    let rows = [after.checked_sub(1).map(|before| track[before]), track.get(after).copied()];
     let off = |row: &&Observation| (row.frame - tick).abs();
     let nearest = rows.into_iter().flatten().min_by_key(off)?;
     if off(&nearest) as f64 <= ON_STEP * step as f64 {

@@ -32,11 +32,7 @@ impl TryFrom<[[f64; SIZE]; SIZE]> for Homography {
         let length = |row: &[f64; SIZE]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
         let volume = determinant(&rows) / rows.iter().map(length).product::<f64>();
         // False for NaN.
-        if volume.abs() > f64::EPSILON {
-            Ok(Self(rows))
-        } else {
-            Err(HomographyError::Singular)
-        }
+        if volume.abs() > f64::EPSILON { Ok(Self(rows)) } else { Err(HomographyError::Singular) }
     }
 }
 
@@ -91,17 +87,11 @@ impl std::str::FromStr for Homography {
         let mut rows = [[0.0; SIZE]; SIZE];
         let mut count = 0;
         for (index, line) in text.lines().enumerate() {
-            let fields: Vec<&str> = line
-                .split([' ', '\t', ','])
-                .filter(|field| !field.trim().is_empty())
-                .collect();
+            let fields: Vec<&str> = line.split([' ', '\t', ',']).filter(|field| !field.trim().is_empty()).collect();
             if fields.is_empty() {
                 continue;
             }
-            let wrong = || HomographyError::Line {
-                line: index + 1,
-                found: line.chars().take(60).collect(),
-            };
+            let wrong = || HomographyError::Line { line: index + 1, found: line.chars().take(60).collect() };
             let row = rows.get_mut(count).ok_or_else(wrong)?;
             if fields.len() != SIZE {
                 return Err(wrong());
@@ -135,9 +125,5 @@ pub enum HomographyError {
         "pedestrian {pedestrian}, frame {frame}: pixel {pixel:?} lies on the horizon of the homography; does it \
          belong to this camera, and map pixels to metres?"
     )]
-    Horizon {
-        pedestrian: PedestrianName,
-        frame: i64,
-        pixel: [f64; 2],
-    },
+    Horizon { pedestrian: PedestrianName, frame: i64, pixel: [f64; 2] },
 }

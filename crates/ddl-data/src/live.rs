@@ -187,9 +187,7 @@ impl LiveTracks {
     pub fn with_interval(self, seconds: impl Into<Option<f64>>) -> Self {
         let ticks = seconds.into().map(|seconds| self.ticks(seconds));
         // Less than a tick is every frame.
-        let interval = ticks
-            .map(|ticks| if ticks < 1.0 { 0.0 } else { ticks })
-            .or(self.interval);
+        let interval = ticks.map(|ticks| if ticks < 1.0 { 0.0 } else { ticks }).or(self.interval);
         Self { interval, ..self }
     }
 
@@ -329,16 +327,11 @@ impl LiveTracks {
         }
         let is_known = |id: &PedestrianId| self.pedestrians.get(id).is_some_and(|known| !self.is_gone(known, tick));
         let new = positions.iter().filter(|(id, _)| !is_known(id)).count();
-        let kept = self
-            .pedestrians
-            .values()
-            .filter(|pedestrian| !self.is_gone(pedestrian, tick));
+        let kept = self.pedestrians.values().filter(|pedestrian| !self.is_gone(pedestrian, tick));
         if kept.count() + new <= self.most_pedestrians {
             return Ok(());
         }
-        Err(LiveError::TooManyPedestrians {
-            limit: self.most_pedestrians,
-        })
+        Err(LiveError::TooManyPedestrians { limit: self.most_pedestrians })
     }
 
     /// Whether a pedestrian is forgotten at this tick.
@@ -363,17 +356,12 @@ impl LiveTracks {
     /// Decides whether there is a window at this tick, which has so many rows.
     fn decide_moment(&mut self, tick: i64, rows: usize) {
         let step = self.clock.frame_step();
-        let recent = self
-            .pedestrians
-            .values()
-            .filter(|pedestrian| tick - pedestrian.last_row < step);
+        let recent = self.pedestrians.values().filter(|pedestrian| tick - pedestrian.last_row < step);
         if recent.count() > 1 {
             self.frames_of_several += u64::from(rows > 1);
             self.frames_of_one += u64::from(rows == 1);
         }
-        let interval = self
-            .interval
-            .unwrap_or(if self.have_common_frames() { 0.0 } else { step as f64 });
+        let interval = self.interval.unwrap_or(if self.have_common_frames() { 0.0 } else { step as f64 });
         // How late the frame is for the next window; a clock may jitter.
         let late = tick as f64 - self.next_moment + ON_STEP * step as f64;
         self.is_moment = interval == 0.0 || late >= 0.0;
@@ -442,10 +430,7 @@ pub fn checked_frame(
         LiveError::check_row(frame, pedestrian, position)?;
     }
     match positions.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        Some(pair) => Err(LiveError::Duplicate {
-            pedestrian: pair[0].0,
-            frame,
-        }),
+        Some(pair) => Err(LiveError::Duplicate { pedestrian: pair[0].0, frame }),
         None => Ok(positions),
     }
 }

@@ -22,9 +22,7 @@ const DEFAULT_FOLDER: &str = "datasets/eth_ucy";
 /// [`DataError::NotFound`] names every folder tried and the first file missing in it; [`DataError::NoFiles`] for
 /// conventions without files of fixed names.
 pub fn locate(convention: Convention, explicit: Option<&Path>) -> Result<PathBuf, DataError> {
-    let variable = std::env::var_os(DATASETS_VARIABLE)
-        .filter(|v| !v.is_empty())
-        .map(PathBuf::from);
+    let variable = std::env::var_os(DATASETS_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
     let here = std::env::current_dir().unwrap_or_default();
     locate_among(convention, roots(explicit, variable.as_deref(), &here))
 }
@@ -65,11 +63,7 @@ fn locate_among(convention: Convention, roots: Vec<PathBuf>) -> Result<PathBuf, 
             }
         }
     }
-    Err(DataError::NotFound {
-        convention: convention.name(),
-        searched,
-        variable: DATASETS_VARIABLE,
-    })
+    Err(DataError::NotFound { convention: convention.name(), searched, variable: DATASETS_VARIABLE })
 }
 
 #[cfg(test)]

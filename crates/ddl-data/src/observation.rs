@@ -21,10 +21,6 @@ impl Observation {
     /// An observation of a pedestrian at a frame and position (m).
     #[must_use]
     pub fn new(frame: i64, pedestrian: PedestrianId, position: Position) -> Self {
-        Self {
-            frame,
-            pedestrian,
-            position,
-        }
+        Self { frame, pedestrian, position }
     }
 }

@@ -163,10 +163,7 @@ impl Speeds {
             let farthest = self.farthest;
             Some(PlausibilityWarning::Still { farthest })
         } else if self.side < NARROW && self.pedestrians >= A_CROWD && self.steps >= MANY_STEPS && crosses {
-            Some(PlausibilityWarning::Narrow {
-                pedestrians: self.pedestrians,
-                side: self.side,
-            })
+            Some(PlausibilityWarning::Narrow { pedestrians: self.pedestrians, side: self.side })
         } else if let Some((median, whose)) = speeds.find(|(speed, _)| *speed > IMPLAUSIBLE) {
             Some(PlausibilityWarning::Fast { median, whose })
         } else if self.repeated > OFTEN_REPEATED {
@@ -199,10 +196,7 @@ impl Recording {
         let (mut walking, mut straight): (Vec<f64>, Option<f64>) = (Vec::new(), None);
         let (mut at_zero, mut repeated, mut walked) = ([0; 2], 0, 0);
         for track in tracks.values() {
-            let zeros = track
-                .iter()
-                .filter(|seen| seen.position.iter().all(|x| *x == 0.0))
-                .count();
+            let zeros = track.iter().filter(|seen| seen.position.iter().all(|x| *x == 0.0)).count();
             if zeros > 1 {
                 at_zero = [at_zero[0] + zeros, at_zero[1] + 1];
             }

@@ -55,18 +55,12 @@ impl Recording {
         if observations.is_empty() {
             return Err(RecordingError::Empty);
         }
-        for &Observation {
-            frame,
-            pedestrian,
-            position,
-        } in &observations
-        {
+        for &Observation { frame, pedestrian, position } in &observations {
             LiveError::check_row(frame, pedestrian, position)?;
         }
         observations.sort_unstable_by_key(|o| (o.frame, o.pedestrian));
-        if let Some(pair) = observations
-            .windows(2)
-            .find(|w| (w[0].frame, w[0].pedestrian) == (w[1].frame, w[1].pedestrian))
+        if let Some(pair) =
+            observations.windows(2).find(|w| (w[0].frame, w[0].pedestrian) == (w[1].frame, w[1].pedestrian))
         {
             let Observation { frame, pedestrian, .. } = pair[0];
             return Err(LiveError::Duplicate { pedestrian, frame }.into());
@@ -110,10 +104,7 @@ impl Recording {
         // Ascending by difference; `max_by_key` keeps the last of equal counts, hence reversed.
         let usual = counts.into_iter().rev().max_by_key(|&(_, count)| count);
         let frame_step = usual.map_or(1, |(difference, _)| difference);
-        Ok(Self {
-            frame_step,
-            ..recording
-        })
+        Ok(Self { frame_step, ..recording })
     }
 
     /// The differences of frame numbers between successive rows of each pedestrian.
@@ -144,10 +135,7 @@ impl Recording {
         if apart > 0.0 && apart < FASTEST {
             return Err(ClockError::TooFast { apart });
         }
-        let mut recording = Self {
-            frame_step: clock.frame_step(),
-            ..self.clone()
-        };
+        let mut recording = Self { frame_step: clock.frame_step(), ..self.clone() };
         for frame in &mut recording.frames {
             *frame = clock.tick(*frame)?;
         }
@@ -183,11 +171,7 @@ impl Recording {
     #[must_use]
     pub fn with_time_unit(self, time_unit: Option<TimeUnit>) -> Self {
         let frame_step = time_unit.map_or(self.frame_step, |unit| Clock::with_stamps(unit).frame_step());
-        Self {
-            frame_step,
-            time_unit,
-            ..self
-        }
+        Self { frame_step, time_unit, ..self }
     }
 
     /// What was assumed while the file was read, a sentence each.
@@ -301,11 +285,7 @@ impl Recording {
 
     /// One pedestrian's observations in order of time; empty if no pedestrian has this id.
     pub fn track(&self, pedestrian: PedestrianId) -> Vec<Observation> {
-        self.observations
-            .iter()
-            .filter(|o| o.pedestrian == pedestrian)
-            .copied()
-            .collect()
+        self.observations.iter().filter(|o| o.pedestrian == pedestrian).copied().collect()
     }
 
     /// Index of the annotated frame at which the last share of the recording begins.

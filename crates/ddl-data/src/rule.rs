@@ -63,13 +63,12 @@ impl FromStr for WindowRule {
             "social-gan" => Some(SOCIAL_GAN_FEWEST),
             _ => word.strip_prefix("social-gan-").and_then(|number| number.parse().ok()),
         };
-        fewest
-            .filter(|&fewest| fewest > 0)
-            .map(|min_pedestrians| Self::SocialGan { min_pedestrians })
-            .ok_or_else(|| UnknownName {
+        fewest.filter(|&fewest| fewest > 0).map(|min_pedestrians| Self::SocialGan { min_pedestrians }).ok_or_else(
+            || UnknownName {
                 kind: "window rule",
                 found: word.to_owned(),
                 expected: "published, complete, observed, social-gan (at least 2 pedestrians), social-gan-1",
-            })
+            },
+        )
     }
 }

@@ -19,9 +19,7 @@ impl SpatialIndex {
     pub fn new(positions: &[Position]) -> Self {
         let places = positions.iter().zip(0..);
         let places = places.map(|(&position, index)| GeomWithData::new(position, index));
-        Self {
-            tree: RTree::bulk_load(places.collect()),
-        }
+        Self { tree: RTree::bulk_load(places.collect()) }
     }
 
     /// Indices of the places within the box |dx| <= w and |dy| <= w around `centre`, in no order; w is the half width

@@ -123,10 +123,7 @@ impl Recording {
             return 0.0;
         };
         let span = |track: &Vec<&Observation>| (track[track.len() - 1].frame - track[0].frame) as f64;
-        let expected: f64 = tracks
-            .values()
-            .map(|track| 1.0 + (span(track) / spacing as f64).round())
-            .sum();
+        let expected: f64 = tracks.values().map(|track| 1.0 + (span(track) / spacing as f64).round()).sum();
         (1.0 - self.observations().len() as f64 / expected).max(0.0)
     }
 
@@ -135,10 +132,7 @@ impl Recording {
         let Some(spacing) = self.usual_spacing() else {
             return 0;
         };
-        let off = self
-            .differences()
-            .into_iter()
-            .map(|difference| (difference - spacing).abs());
+        let off = self.differences().into_iter().map(|difference| (difference - spacing).abs());
         let mut off: Vec<i64> = off.filter(|off| 2 * off < spacing).collect();
         off.sort_unstable();
         off.get(off.len() / 2).copied().unwrap_or(0)

@@ -36,12 +36,7 @@ struct Links<'a> {
 impl<'a> Links<'a> {
     fn new(recording: &'a Recording, rule: WindowRule) -> Self {
         let count = recording.observations().len();
-        let mut links = Self {
-            recording,
-            rule,
-            next: vec![None; count],
-            run: vec![0; count],
-        };
+        let mut links = Self { recording, rule, next: vec![None; count], run: vec![0; count] };
         for frame_index in (0..recording.frames().len()).rev() {
             let here = recording.range_of(frame_index);
             for (from, to) in links.pairs(here.clone(), links.frame_after(frame_index)) {
@@ -59,9 +54,9 @@ impl<'a> Links<'a> {
 
     fn frame_after(&self, index: usize) -> Range<usize> {
         match self.rule {
-            WindowRule::Published | WindowRule::Complete | WindowRule::Observed => self
-                .recording
-                .range_at(self.recording.frames()[index] + self.recording.frame_step()),
+            WindowRule::Published | WindowRule::Complete | WindowRule::Observed => {
+                self.recording.range_at(self.recording.frames()[index] + self.recording.frame_step())
+            }
             WindowRule::SocialGan { .. } if index + 1 < self.recording.frames().len() => {
                 self.recording.range_of(index + 1)
             }
@@ -101,11 +96,7 @@ impl<'a> Links<'a> {
     }
 
     fn window(&self, index: usize) -> Option<Window> {
-        let first: Vec<usize> = self
-            .recording
-            .range_of(index)
-            .filter(|&i| self.run[i] >= WINDOW)
-            .collect();
+        let first: Vec<usize> = self.recording.range_of(index).filter(|&i| self.run[i] >= WINDOW).collect();
         let fewest = match self.rule {
             WindowRule::SocialGan { min_pedestrians } => min_pedestrians.max(1),
             WindowRule::Published | WindowRule::Complete | WindowRule::Observed => 1,
@@ -114,11 +105,8 @@ impl<'a> Links<'a> {
             return None;
         }
         let observations = self.recording.observations();
-        let follow = |start: usize| {
-            std::iter::successors(Some(start), |&i| self.next[i])
-                .take(WINDOW)
-                .map(|i| &observations[i])
-        };
+        let follow =
+            |start: usize| std::iter::successors(Some(start), |&i| self.next[i]).take(WINDOW).map(|i| &observations[i]);
         let frames = follow(first[0]).map(|o| o.frame).collect();
         let pedestrians: Vec<PedestrianId> = first.iter().map(|&i| observations[i].pedestrian).collect();
         let positions: Vec<Position> = first.iter().flat_map(|&i| follow(i)).map(|o| o.position).collect();

@@ -13,11 +13,7 @@ pub enum DynamicsError {
     #[error("{entry} is {value}: it must be a finite number")]
     NonFinite { entry: String, value: f64 },
     #[error("{quantity} is {value}{unit}: it must be positive and finite")]
-    NotPositive {
-        quantity: &'static str,
-        unit: &'static str,
-        value: f64,
-    },
+    NotPositive { quantity: &'static str, unit: &'static str, value: f64 },
     #[error("entry ({row}, {column}) of the Cholesky factor is {value}: entries above the diagonal must be 0")]
     NotLowerTriangular { row: usize, column: usize, value: f64 },
     #[error("the Cholesky factor is too large: L L^T overflows; scale the factor down or use f64")]
@@ -64,11 +60,7 @@ pub(crate) fn ensure_positive<T: Real>(
     if value > T::zero() && value.is_finite() {
         Ok(())
     } else {
-        Err(DynamicsError::NotPositive {
-            quantity,
-            unit,
-            value: value.as_f64(),
-        })
+        Err(DynamicsError::NotPositive { quantity, unit, value: value.as_f64() })
     }
 }
 

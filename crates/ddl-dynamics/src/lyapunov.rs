@@ -76,10 +76,7 @@ impl<T: Real> LyapunovCertificate<T> {
         bounds: &MotionBounds<T>,
     ) -> Result<Self, DynamicsError> {
         if path.len() != self.steps.len() + 1 {
-            return Err(DynamicsError::LengthMismatch {
-                positions: path.len(),
-                metrics: self.steps.len(),
-            });
+            return Err(DynamicsError::LengthMismatch { positions: path.len(), metrics: self.steps.len() });
         }
         let distances = path.iter().map(|p| attractor.distance(p));
         // NaN differs from everything.
@@ -87,10 +84,7 @@ impl<T: Real> LyapunovCertificate<T> {
             return Err(DynamicsError::OtherPath { position });
         }
         let motion = MotionEvidence::new(path, attractor, bounds, self.time_step);
-        Ok(Self {
-            motion: Some(motion),
-            ..self
-        })
+        Ok(Self { motion: Some(motion), ..self })
     }
 
     /// Speed, change of speed, deviation from the straight line and final distance of the motion, with their bounds;
@@ -114,10 +108,7 @@ impl<T: Real> LyapunovCertificate<T> {
         attractor: &Attractor<T, D>,
         dt: T,
     ) -> Result<Self, DynamicsError> {
-        let mismatch = DynamicsError::LengthMismatch {
-            positions: positions.len(),
-            metrics: metrics.len(),
-        };
+        let mismatch = DynamicsError::LengthMismatch { positions: positions.len(), metrics: metrics.len() };
         let Some(last) = positions.last().filter(|_| positions.len() == metrics.len() + 1) else {
             return Err(mismatch);
         };
@@ -126,10 +117,7 @@ impl<T: Real> LyapunovCertificate<T> {
             let near = attractor.distance(position).is_finite();
             let measurable = near.then_some(()).ok_or(DynamicsError::DistanceTooLarge);
             let measurable = ensure_finite("position", position).and(measurable);
-            measurable.map_err(|cause| DynamicsError::Step {
-                step,
-                cause: Box::new(cause),
-            })?;
+            measurable.map_err(|cause| DynamicsError::Step { step, cause: Box::new(cause) })?;
         }
         let steps = positions
             .windows(2)
@@ -160,10 +148,7 @@ impl<T: Real> LyapunovCertificate<T> {
         let mut metrics = Vec::with_capacity(steps);
         for (step, position) in path[..steps].iter().enumerate() {
             let state = State::new(*position, step, dt * T::rounded(step as f64));
-            metrics.push(flow.metric(&state).map_err(|cause| DynamicsError::Step {
-                step,
-                cause: Box::new(cause),
-            })?);
+            metrics.push(flow.metric(&state).map_err(|cause| DynamicsError::Step { step, cause: Box::new(cause) })?);
         }
         Self::new(path, &metrics, flow.attractor(), dt)
     }
@@ -196,10 +181,7 @@ impl<T: Real> LyapunovCertificate<T> {
 
     /// The distances to the goal at all positions, one more than steps (metres).
     pub fn potentials(&self) -> impl Iterator<Item = T> + '_ {
-        self.steps
-            .iter()
-            .map(|step| step.potential)
-            .chain([self.final_potential])
+        self.steps.iter().map(|step| step.potential).chain([self.final_potential])
     }
 
     /// The distance to the goal after the last step (metres).

@@ -39,10 +39,7 @@ impl<T: Real> CholeskyMetric<T, 2> {
 
     /// `axis axis^T + sigma I`, `axis` in (m/s)^(1/2). Both must be finite, and `sigma` positive.
     pub(crate) fn of_axis(axis: SVector<T, 2>, sigma: T) -> Self {
-        Self {
-            factor: SMatrix::<T, 2, 2>::new(axis.x, T::zero(), axis.y, T::zero()),
-            sigma,
-        }
+        Self { factor: SMatrix::<T, 2, 2>::new(axis.x, T::zero(), axis.y, T::zero()), sigma }
     }
 }
 
@@ -80,10 +77,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
 
     /// The identity: `P u = u`, exactly.
     pub fn identity() -> Self {
-        Self {
-            factor: SMatrix::zeros(),
-            sigma: T::one(),
-        }
+        Self { factor: SMatrix::zeros(), sigma: T::one() }
     }
 
     /// The lower-triangular factor `L` ((m/s)^(1/2)).
@@ -140,10 +134,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// singular. For other `D` by a singular value decomposition, with an error of a few `epsilon * |L|` in `s`.
     pub fn eigenvalue_range(&self) -> EigenvalueRange<T> {
         let (small, large) = factor_singular_values(&self.factor);
-        EigenvalueRange {
-            smallest: self.sigma + small * small,
-            largest: self.sigma + large * large,
-        }
+        EigenvalueRange { smallest: self.sigma + small * small, largest: self.sigma + large * large }
     }
 
     /// `L^T u`, reading the lower triangle only.

@@ -76,11 +76,8 @@ pub fn arriving_schedule<T: Real>(
 ) -> Result<impl MetricSource<T, 2>, DynamicsError> {
     let schedule = MetricSchedule::new(metrics)?;
     Ok(move |state: &State<T, 2>| {
-        let time = StepTime {
-            done: state.step,
-            left: schedule.metrics.len().saturating_sub(state.step),
-            dt: time_step,
-        };
+        let time =
+            StepTime { done: state.step, left: schedule.metrics.len().saturating_sub(state.step), dt: time_step };
         let towards = attractor.goal() - state.position;
         Ok(bounds.shape(&schedule.metric(state)?, &towards, time))
     })

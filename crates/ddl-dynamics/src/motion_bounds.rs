@@ -91,12 +91,7 @@ impl<T: Real> MotionBounds<T> {
             && velocity.iter().all(nalgebra::ComplexField::is_finite)
             && share >= T::zero()
             && share <= T::one();
-        valid.then_some(Self {
-            top_speed,
-            velocity,
-            share,
-            absolute: false,
-        })
+        valid.then_some(Self { top_speed, velocity, share, absolute: false })
     }
 
     /// The same bounds for metrics in m/s, as published, instead of relative to the neutral motion in arriving speeds.
@@ -133,19 +128,13 @@ impl<T: Real> MotionBounds<T> {
     pub fn eigenvalues(&self, distance: T, left: usize, dt: T) -> EigenvalueRange<T> {
         let s = self.arriving_speed(distance, left, dt);
         if left <= 1 {
-            return EigenvalueRange {
-                smallest: s,
-                largest: s,
-            };
+            return EigenvalueRange { smallest: s, largest: s };
         }
         let reach = distance / dt;
         let later = T::rounded((left - 1) as f64) * self.top_speed;
         EigenvalueRange {
             smallest: (T::rounded(Self::MIN_SPEED_RATIO) * s).max(reach - later).min(s),
-            largest: (T::rounded(Self::MAX_SPEED_RATIO) * s)
-                .min(reach)
-                .min(self.top_speed)
-                .max(s),
+            largest: (T::rounded(Self::MAX_SPEED_RATIO) * s).min(reach).min(self.top_speed).max(s),
         }
     }
 
@@ -215,11 +204,7 @@ fn within<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> Vector3<T> {
 fn into_metric<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> CholeskyMetric<T, 2> {
     let ([first, second], [cos, sin]) = axes(p, range);
     // Half of the double angle: (1 + cos, sin) has its direction, and so does (sin, 1 - cos).
-    let axis = if cos >= T::zero() {
-        Vector2::new(T::one() + cos, sin)
-    } else {
-        Vector2::new(sin, T::one() - cos)
-    };
+    let axis = if cos >= T::zero() { Vector2::new(T::one() + cos, sin) } else { Vector2::new(sin, T::one() - cos) };
     let (_, axis) = polar(&axis);
     let stretch = (first - second).max(T::zero()).sqrt();
     CholeskyMetric::of_axis(axis * stretch, second)

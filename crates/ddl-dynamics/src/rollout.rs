@@ -63,10 +63,8 @@ where
         // Multiplied, not accumulated: 12 steps of 0.4 s end at exactly 4.8 s.
         let time = dt * T::rounded(step as f64);
         let state = State::new(positions[step], step, time);
-        positions[next] = integrator.step(flow, &state, dt).map_err(|cause| DynamicsError::Step {
-            step,
-            cause: Box::new(cause),
-        })?;
+        positions[next] =
+            integrator.step(flow, &state, dt).map_err(|cause| DynamicsError::Step { step, cause: Box::new(cause) })?;
     }
     Ok(())
 }

@@ -48,10 +48,7 @@ pub(crate) fn measure_among(
         };
         ResultRow::measure_among(conditions, forecaster, windows, full_windows)
     };
-    let mut rows = vec![
-        row(&ConstantVelocity::LastStep, None)?,
-        row(&ConstantVelocity::MeanObserved, None)?,
-    ];
+    let mut rows = vec![row(&ConstantVelocity::LastStep, None)?, row(&ConstantVelocity::MeanObserved, None)?];
     if conditions.protocol.hypotheses() > 1 {
         let noise = ConstantVelocity::AngularNoise { seed: NOISE_SEED };
         rows.push(row(&noise, Some(NOISE_SEED))?);

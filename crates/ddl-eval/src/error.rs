@@ -18,11 +18,7 @@ pub enum EvaluationError {
     #[error("{windows} windows but {full_windows} full ones; each window needs its full one")]
     FullWindowCount { windows: usize, full_windows: usize },
     #[error("window of `{recording}` starting at frame {start_frame}{problem}")]
-    Window {
-        recording: String,
-        start_frame: i64,
-        problem: WindowProblem,
-    },
+    Window { recording: String, start_frame: i64, problem: WindowProblem },
 }
 
 /// Why a window cannot be scored with its forecast; the messages follow the name of the window.
@@ -47,11 +43,7 @@ pub enum WindowProblem {
 impl EvaluationError {
     /// A problem of one window.
     pub fn of(window: &Window, problem: WindowProblem) -> Self {
-        Self::Window {
-            recording: window.recording().to_owned(),
-            start_frame: window.start_frame(),
-            problem,
-        }
+        Self::Window { recording: window.recording().to_owned(), start_frame: window.start_frame(), problem }
     }
 
     /// Checks that a forecast, or what else is known of a window, has as many pedestrians.

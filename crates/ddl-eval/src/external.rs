@@ -63,10 +63,7 @@ pub fn read(
     windows: &[Window],
     coverage: Coverage,
 ) -> Result<Matched, ExternalError> {
-    let file = File::open(path).map_err(|source| ExternalError::File {
-        path: path.to_owned(),
-        source,
-    })?;
+    let file = File::open(path).map_err(|source| ExternalError::File { path: path.to_owned(), source })?;
     let origin = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let reader = BufReader::with_capacity(1 << 20, file);

@@ -53,11 +53,7 @@ pub fn bits(forecast: &Forecast) -> Vec<u64> {
             }
         }
         let spread = (0..HORIZON).map(|t| forecast.scale(i, t));
-        bits.extend(
-            spread
-                .chain([forecast.familiarity(i)])
-                .map(|number| number.map_or(2, f64::to_bits)),
-        );
+        bits.extend(spread.chain([forecast.familiarity(i)]).map(|number| number.map_or(2, f64::to_bits)));
     }
     bits
 }
@@ -86,10 +82,7 @@ mod tests {
 
         fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
             let [first, last] = [window.len() - 2, window.len() - 1].map(|i| window.track(i).get(self.frame));
-            Ok(forecast(
-                window.len(),
-                &vec![walk([f64::from(u8::from(first != last)), 0.0], [0.0, 0.0]); window.len()],
-            ))
+            Ok(forecast(window.len(), &vec![walk([f64::from(u8::from(first != last)), 0.0], [0.0, 0.0]); window.len()]))
         }
     }
 
@@ -116,13 +109,7 @@ mod tests {
             let goals = vec![[0.0, 0.0], [0.0, goal]];
             let forecast = Forecast::new(1, 2, walks, vec![weight, 1.0 - weight], Some(goals)).unwrap();
             let forecast = forecast.with_certified(vec![true, held]).unwrap();
-            bits(
-                &forecast
-                    .with_familiarity(vec![familiarity])
-                    .unwrap()
-                    .with_spread(spread(scale))
-                    .unwrap(),
-            )
+            bits(&forecast.with_familiarity(vec![familiarity]).unwrap().with_spread(spread(scale)).unwrap())
         };
         let all = [
             with(0.5, 1.0, true, 0.5, 1.0),

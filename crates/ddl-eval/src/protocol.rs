@@ -121,9 +121,7 @@ impl Protocol {
         windows: &[Window],
     ) -> Result<Vec<Forecast>, ForecastError> {
         let forecasts = forecaster.forecast_all(&self.visible(windows))?.into_iter();
-        let scored = forecasts
-            .zip(windows)
-            .map(|(forecast, window)| forecast.without_bystanders(window));
+        let scored = forecasts.zip(windows).map(|(forecast, window)| forecast.without_bystanders(window));
         self.admit(scored.collect(), &forecaster.name())
     }
 
@@ -136,11 +134,7 @@ impl Protocol {
         if self.hypotheses() == 1 {
             return Ok(forecasts.iter().map(Forecast::single).collect());
         }
-        match forecasts
-            .iter()
-            .map(Forecast::hypotheses)
-            .find(|&k| k > self.hypotheses())
-        {
+        match forecasts.iter().map(Forecast::hypotheses).find(|&k| k > self.hypotheses()) {
             None => Ok(forecasts),
             Some(found) => Err(ForecastError::TooManyHypotheses {
                 protocol: self.name(),

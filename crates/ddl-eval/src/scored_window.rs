@@ -22,11 +22,7 @@ impl<'a> ScoredWindow<'a> {
             return Err(EvaluationError::of(window, WindowProblem::NoFuture));
         }
         EvaluationError::unless_same_pedestrians(window, forecast.pedestrians())?;
-        Ok(Self {
-            window,
-            forecast,
-            full_window: window,
-        })
+        Ok(Self { window, forecast, full_window: window })
     }
 
     /// Sets `full`, the window with all pedestrians of these frames. Metrics that use the true futures of others
@@ -40,10 +36,7 @@ impl<'a> ScoredWindow<'a> {
         if !same_frames || indices_in_full(window, full).is_none() {
             return Err(EvaluationError::of(window, WindowProblem::FullWindow));
         }
-        Ok(Self {
-            full_window: full,
-            ..self
-        })
+        Ok(Self { full_window: full, ..self })
     }
 
     /// The window.
@@ -96,9 +89,7 @@ impl<'a> ScoredWindow<'a> {
 
     /// Positions of the hypotheses of pedestrian `i` at forecast frame `t`, counted from 0; `[K]`, metres.
     pub(crate) fn hypotheses_at(&self, i: usize, t: usize) -> Vec<Position> {
-        (0..self.hypotheses())
-            .map(|k| self.forecast.hypothesis(i, k)[t])
-            .collect()
+        (0..self.hypotheses()).map(|k| self.forecast.hypothesis(i, k)[t]).collect()
     }
 }
 

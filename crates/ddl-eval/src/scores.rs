@@ -162,9 +162,7 @@ impl Scores {
             scored.filter(|pedestrian| holds(pedestrian)).count() as f64 / total
         };
         let each = || scenes.iter().flat_map(|s| &s.pedestrians);
-        let futures = scenes
-            .iter()
-            .map(|s| (s.pedestrians.len(), s.joint, s.futures.as_ref()));
+        let futures = scenes.iter().map(|s| (s.pedestrians.len(), s.joint, s.futures.as_ref()));
         // All pedestrians have the same number of hypotheses, so either all or none have a distribution.
         let several = first.hypotheses() > 1;
         let of_several = |metric: fn(&PedestrianScores) -> Option<f64>| {
@@ -191,9 +189,7 @@ impl Scores {
             expected_fde: Some(mean(|w| w.expected_fde)),
             most_likely_ade: Some(mean(|w| w.most_likely_ade)),
             most_likely_fde: Some(mean(|w| w.most_likely_fde)),
-            likeliest: Some(DeployableErrors::of(
-                each().map(|w| [w.most_likely_ade, w.most_likely_fde]),
-            )),
+            likeliest: Some(DeployableErrors::of(each().map(|w| [w.most_likely_ade, w.most_likely_fde]))),
             medoid: Some(DeployableErrors::of(each().map(|w| w.medoid))),
             miss_rate_1m: Some(share(|w| w.missed[1])),
             miss_rate_2m: Some(share(|w| w.missed[2])),
@@ -232,8 +228,7 @@ fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> Covariance {
         covariances.fold(Covariance::default(), |sum, d| sum.plus(d.covariance))
     };
     let sum = scenes.iter().map(of_scene);
-    sum.fold(Covariance::default(), Covariance::plus)
-        .scaled(1.0 / pedestrians)
+    sum.fold(Covariance::default(), Covariance::plus).scaled(1.0 / pedestrians)
 }
 
 fn check_alike(window: &Window, forecast: &Forecast, first: &Forecast) -> Result<(), EvaluationError> {

@@ -42,11 +42,7 @@ impl Analogues {
                 .ok_or(TrackError::VelocityOverflow { index })
         })?;
         let (components, deviations): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
-        Ok(Self {
-            index: MotionIndex::new(&components),
-            deviations,
-            time_step,
-        })
+        Ok(Self { index: MotionIndex::new(&components), deviations, time_step })
     }
 
     pub(crate) fn goals(&self, track: &[[f64; 2]], experts: usize, clusters: usize) -> Result<GoalSet, GoalError> {

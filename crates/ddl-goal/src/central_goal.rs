@@ -59,11 +59,7 @@ impl GoalSet {
         let lengths = changes.iter().map(|[x, y]| x.hypot(*y));
         let change = lengths.sum::<f64>() / changes.len() as f64;
         let noise = noise_share(&changes);
-        let standing = if change > 0.0 {
-            STANDING * change / mean[0].hypot(mean[1])
-        } else {
-            0.0
-        };
+        let standing = if change > 0.0 { STANDING * change / mean[0].hypot(mean[1]) } else { 0.0 };
         let walking = 1.0 / (1.0 + standing.powi(2));
         let trust = TRUST * (1.0 - noise) * (-(change / JITTER).powi(2)).exp() * walking;
         let exact = (-(change / EXACT).powi(2)).exp();
@@ -88,11 +84,7 @@ fn since_reversal(observed: &[[f64; 2]]) -> Option<&[[f64; 2]]> {
     let step = |end: usize| -> [f64; 2] { std::array::from_fn(|axis| observed[end][axis] - observed[end - 1][axis]) };
     let cosine = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
         let walks = a.hypot(b) > WALKING && c.hypot(d) > WALKING;
-        if walks {
-            (a * c + b * d) / (a.hypot(b) * c.hypot(d))
-        } else {
-            0.0
-        }
+        if walks { (a * c + b * d) / (a.hypot(b) * c.hypot(d)) } else { 0.0 }
     };
     let last = observed.len().checked_sub(1).filter(|last| *last >= 3)?;
     if cosine(step(last), step(last - 1)) < SAME_WAY {

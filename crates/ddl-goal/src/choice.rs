@@ -38,9 +38,7 @@ fn first_centres(points: &Points, clusters: usize) -> Vec<[f64; 2]> {
             .filter(|&i| cells[i].cost > 0.0)
             .max_by(|&a, &b| cells[a].cost.total_cmp(&cells[b].cost).then(b.cmp(&a)));
         let Some(costliest) = costliest else { break };
-        let Cell {
-            members, mean, axis, ..
-        } = &cells[costliest];
+        let Cell { members, mean, axis, .. } = &cells[costliest];
         let is_behind = |index: usize| {
             let [x, y] = points.get(index);
             (x - mean[0]) * axis[0] + (y - mean[1]) * axis[1] < 0.0
@@ -90,12 +88,7 @@ impl Cell {
             yy += w * dy * dy;
         }
         let (sin, cos) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
-        Self {
-            members,
-            mean,
-            axis: [cos, sin],
-            cost: (weight * (xx + yy)).sqrt(),
-        }
+        Self { members, mean, axis: [cos, sin], cost: (weight * (xx + yy)).sqrt() }
     }
 }
 

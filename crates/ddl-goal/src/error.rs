@@ -9,11 +9,7 @@ use thiserror::Error;
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum ParamsError {
     #[error("{field} is {value}: it must be {rule}")]
-    Count {
-        field: &'static str,
-        value: usize,
-        rule: &'static str,
-    },
+    Count { field: &'static str, value: usize, rule: &'static str },
     #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
     InvalidGamma { gamma: f64 },
     #[error("query is published-future and frame is heading: the query that reads the future requires frame world")]

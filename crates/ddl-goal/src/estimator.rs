@@ -81,11 +81,7 @@ impl GoalEstimator {
                 Preparation::World(Box::new(index), KMeans::new(params.clusters, params.restarts))
             }
         };
-        Ok(Self {
-            params,
-            library,
-            method,
-        })
+        Ok(Self { params, library, method })
     }
 
     /// The parameters.
@@ -142,12 +138,7 @@ impl GoalEstimator {
         estimated
             .into_iter()
             .enumerate()
-            .map(|(index, result)| {
-                result.map_err(|source| GoalError::BatchTrack {
-                    index,
-                    source: Box::new(source),
-                })
-            })
+            .map(|(index, result)| result.map_err(|source| GoalError::BatchTrack { index, source: Box::new(source) }))
             .collect()
     }
 }

@@ -31,10 +31,7 @@ pub(crate) fn geometric_median(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2]
     if let Some(&point) = points.iter().find(outweighs) {
         return point;
     }
-    debug_assert!(
-        weights.iter().sum::<f64>() > 0.0,
-        "the weights must have a positive sum"
-    );
+    debug_assert!(weights.iter().sum::<f64>() > 0.0, "the weights must have a positive sum");
     let mut centre = mean(points, weights);
     for _ in 0..MOST_STEPS {
         let [x, y] = Pull::at(centre, points, weights).step();
@@ -44,9 +41,7 @@ pub(crate) fn geometric_median(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2]
         }
     }
     let least = (1.0 - ROUNDING) * total_distance(centre, points, weights);
-    let distances = points
-        .iter()
-        .map(|&point| (total_distance(point, points, weights), point));
+    let distances = points.iter().map(|&point| (total_distance(point, points, weights), point));
     match distances.min_by(|(a, _), (b, _)| a.total_cmp(b)) {
         Some((distance, point)) if distance < least => point,
         _ => centre,
@@ -63,9 +58,7 @@ fn mean(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
 
 fn total_distance(centre: [f64; 2], points: &[[f64; 2]], weights: &[f64]) -> f64 {
     let pairs = points.iter().zip(weights);
-    pairs
-        .map(|(&point, weight)| weight * squared_distance(point, centre).sqrt())
-        .sum()
+    pairs.map(|(&point, weight)| weight * squared_distance(point, centre).sqrt()).sum()
 }
 
 #[derive(Debug, Clone, Copy, Default)]

@@ -28,18 +28,10 @@ impl GoalSet {
     pub(crate) fn new(goals: Vec<[f64; 2]>, weights: Vec<f64>, experts: Vec<Expert>) -> Self {
         let mut ranked: Vec<([f64; 2], f64)> = goals.into_iter().zip(weights).collect();
         ranked.sort_by(|(a, a_weight), (b, b_weight)| {
-            b_weight
-                .total_cmp(a_weight)
-                .then(a[0].total_cmp(&b[0]))
-                .then(a[1].total_cmp(&b[1]))
+            b_weight.total_cmp(a_weight).then(a[0].total_cmp(&b[0])).then(a[1].total_cmp(&b[1]))
         });
         let (goals, weights) = ranked.into_iter().unzip();
-        Self {
-            goals,
-            weights,
-            estimated: None,
-            experts,
-        }
+        Self { goals, weights, estimated: None, experts }
     }
 
     /// `clusters` goals such that the weighted mean distance of an endpoint to its nearest goal is small.
@@ -80,9 +72,7 @@ impl GoalSet {
         }
         let total: f64 = weights.iter().sum();
         if !(total.is_finite() && total > 0.0 && weights.iter().all(|&weight| weight >= 0.0)) {
-            return wrong(format!(
-                "the weights sum to {total}: they must be finite, not negative, and not all 0"
-            ));
+            return wrong(format!("the weights sum to {total}: they must be finite, not negative, and not all 0"));
         }
         let mut points = Points::default();
         for (index, (&end, weight)) in ends.iter().zip(weights).enumerate() {
@@ -138,9 +128,7 @@ impl GoalSet {
     pub fn widened_by(mut self, deviation: f64) -> Self {
         let median = self.median();
         let goals = self.goals.iter().zip(&self.weights);
-        let variance: f64 = goals
-            .map(|(&goal, weight)| weight * squared_distance(goal, median) / 2.0)
-            .sum();
+        let variance: f64 = goals.map(|(&goal, weight)| weight * squared_distance(goal, median) / 2.0).sum();
         if deviation > 0.0 && variance > 0.0 {
             let factor = (1.0 + deviation * deviation / variance).sqrt();
             for goal in &mut self.goals {
@@ -184,10 +172,7 @@ impl GoalSet {
     /// oracle choice of the published protocol.
     pub fn nearest(&self, point: [f64; 2]) -> usize {
         let distances = self.goals.iter().map(|&goal| squared_distance(goal, point));
-        distances
-            .enumerate()
-            .min_by(|(_, a), (_, b)| a.total_cmp(b))
-            .map_or(0, |(index, _)| index)
+        distances.enumerate().min_by(|(_, a), (_, b)| a.total_cmp(b)).map_or(0, |(index, _)| index)
     }
 
     /// The experts that the goals come from, most similar first; in [`crate::RetrievalFrame::Heading`] the first 100.

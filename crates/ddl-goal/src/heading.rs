@@ -65,11 +65,7 @@ impl HeadingFrame {
             let index = observed.len() - 2;
             return Err(TrackError::VelocityOverflow { index });
         }
-        let heading = if length < NEGLIGIBLE {
-            [1.0, 0.0]
-        } else {
-            toward.map(|component| component / length)
-        };
+        let heading = if length < NEGLIGIBLE { [1.0, 0.0] } else { toward.map(|component| component / length) };
         Ok(Self { origin: last, heading })
     }
 
@@ -82,10 +78,7 @@ impl HeadingFrame {
     pub fn to_world(&self, point: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.heading;
         let [ahead, left] = point;
-        [
-            self.origin[0] + cos * ahead - sin * left,
-            self.origin[1] + sin * ahead + cos * left,
-        ]
+        [self.origin[0] + cos * ahead - sin * left, self.origin[1] + sin * ahead + cos * left]
     }
 
     /// Rotates a displacement or velocity from world coordinates to the axes of this frame.

@@ -49,12 +49,7 @@ impl Clustering {
 impl KMeans {
     /// k-means with at least one cluster and at least one restart; at most 300 iterations, tolerance 1e-4.
     pub(crate) fn new(clusters: usize, restarts: usize) -> Self {
-        Self {
-            clusters,
-            restarts,
-            max_iterations: 300,
-            tolerance: 1e-4,
-        }
+        Self { clusters, restarts, max_iterations: 300, tolerance: 1e-4 }
     }
 
     /// Clusters `points` (m), at least one, with random numbers from `seed`.
@@ -82,11 +77,7 @@ impl KMeans {
             best
         };
         let labels = place.iter().map(|&place| run.labels[place] as usize);
-        Ok(Clustering {
-            labels: labels.collect(),
-            centres: run.centres,
-            inertia: run.inertia,
-        })
+        Ok(Clustering { labels: labels.collect(), centres: run.centres, inertia: run.inertia })
     }
 
     fn run(&self, points: &Points, rng: &mut ChaCha8Rng) -> Lloyd {

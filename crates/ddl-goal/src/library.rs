@@ -54,9 +54,7 @@ impl ExpertLibrary {
         make: impl Fn(&[[f64; 2]]) -> Result<T, TrackError>,
     ) -> Result<Vec<T>, LibraryError> {
         let tracks = self.tracks.iter().enumerate();
-        tracks
-            .map(|(index, track)| make(track).map_err(|source| LibraryError::Track { index, source }))
-            .collect()
+        tracks.map(|(index, track)| make(track).map_err(|source| LibraryError::Track { index, source })).collect()
     }
 
     /// The tracks, at least one, positions in metres.
@@ -91,10 +89,7 @@ mod tests {
         assert!(time_step.starts_with("the time step is NaN s"));
         let (positions, needed) = (8, 20);
         let source = TrackError::WrongLength { positions, needed };
-        assert_eq!(
-            refused(&[&track, &track[..8]], 0.4),
-            LibraryError::Track { index: 1, source }
-        );
+        assert_eq!(refused(&[&track, &track[..8]], 0.4), LibraryError::Track { index: 1, source });
         let mut broken = track;
         broken[19][1] = f64::INFINITY;
         let error = refused(&[&broken], 0.4).to_string();

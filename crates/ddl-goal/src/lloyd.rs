@@ -16,12 +16,7 @@ pub(crate) struct Lloyd {
 impl Lloyd {
     pub(crate) fn from_centres(points: &Points, centres: Vec<[f64; 2]>) -> Self {
         let count = points.len();
-        let mut run = Self {
-            centres,
-            labels: vec![0; count],
-            nearest: vec![0.0; count],
-            inertia: 0.0,
-        };
+        let mut run = Self { centres, labels: vec![0; count], nearest: vec![0.0; count], inertia: 0.0 };
         run.assign(points);
         run
     }

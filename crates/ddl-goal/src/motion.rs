@@ -56,14 +56,8 @@ impl Motion {
             *component = (share * direction) as f32;
         }
         let seconds = (WINDOW - span.positions()) as f64 * time_step;
-        let straight_on = frame
-            .turn_to_frame(velocities[STEPS - 1])
-            .map(|velocity| seconds * velocity);
-        Ok(Self {
-            frame,
-            components,
-            straight_on,
-        })
+        let straight_on = frame.turn_to_frame(velocities[STEPS - 1]).map(|velocity| seconds * velocity);
+        Ok(Self { frame, components, straight_on })
     }
 
     /// Deviation (m, ahead and to the left) of an endpoint (m) from the endpoint after repeating the last step.

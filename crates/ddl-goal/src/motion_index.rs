@@ -29,10 +29,7 @@ impl MotionIndex {
             }
             block
         };
-        Self {
-            blocks: motions.chunks(LANES).map(block).collect(),
-            len: motions.len(),
-        }
+        Self { blocks: motions.chunks(LANES).map(block).collect(), len: motions.len() }
     }
 
     /// The `wanted` nearest of the tracks and their mirror images (all if there are fewer), nearest first; ties by
@@ -43,12 +40,7 @@ impl MotionIndex {
             return Vec::new();
         }
         let mut keys = Vec::new();
-        Dispatch::detect().run(NearestMotions {
-            blocks: &self.blocks,
-            query,
-            wanted,
-            keys: &mut keys,
-        });
+        Dispatch::detect().run(NearestMotions { blocks: &self.blocks, query, wanted, keys: &mut keys });
         keys.sort_unstable();
         keys.truncate(wanted);
         keys.iter().map(|&key| expert(key)).collect()
@@ -130,11 +122,7 @@ fn distance_of(key: u64) -> f32 {
 
 fn expert(key: u64) -> Expert {
     let number = key as u32 as usize;
-    Expert {
-        index: number / 2,
-        mirrored: number % 2 == 1,
-        distance: distance_of(key).into(),
-    }
+    Expert { index: number / 2, mirrored: number % 2 == 1, distance: distance_of(key).into() }
 }
 
 #[cfg(test)]
@@ -158,11 +146,7 @@ mod tests {
                     let m = if i < SIGNED { *m } else { sign * m };
                     sum + (q - m) * (q - m)
                 });
-                candidates.push(Expert {
-                    index,
-                    mirrored,
-                    distance: distance.into(),
-                });
+                candidates.push(Expert { index, mirrored, distance: distance.into() });
             }
         }
         candidates.sort_by(|a, b| a.distance.total_cmp(&b.distance)); // stable: ties keep their order

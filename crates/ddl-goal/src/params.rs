@@ -79,12 +79,7 @@ impl GoalEstimatorParams {
     /// The estimator exactly as published: the query reads the first future position.
     #[must_use]
     pub fn published() -> Self {
-        Self {
-            frame: RetrievalFrame::World,
-            experts: 100,
-            query: QuerySpan::PublishedFuture,
-            ..Self::default()
-        }
+        Self { frame: RetrievalFrame::World, experts: 100, query: QuerySpan::PublishedFuture, ..Self::default() }
     }
 
     /// Checks the parameters.
@@ -95,18 +90,8 @@ impl GoalEstimatorParams {
     pub fn check(&self) -> Result<(), ParamsError> {
         for (field, value, most, rule) in [
             ("experts", self.experts, usize::MAX, "at least 1 (the paper uses 100)"),
-            (
-                "clusters",
-                self.clusters,
-                MOST_CLUSTERS,
-                "1 to 1000 (the paper uses 20)",
-            ),
-            (
-                "restarts",
-                self.restarts,
-                1000,
-                "1 to 1000 (the published code uses 10)",
-            ),
+            ("clusters", self.clusters, MOST_CLUSTERS, "1 to 1000 (the paper uses 20)"),
+            ("restarts", self.restarts, 1000, "1 to 1000 (the published code uses 10)"),
         ] {
             if !(1..=most).contains(&value) {
                 return Err(ParamsError::Count { field, value, rule });
@@ -149,10 +134,7 @@ mod tests {
             assert!(error.contains(expected), "{error}");
         }
         let gamma = 0.0;
-        let hard = GoalEstimatorParams {
-            gamma,
-            ..Default::default()
-        };
+        let hard = GoalEstimatorParams { gamma, ..Default::default() };
         assert!(hard.check().is_ok());
     }
 }

@@ -46,10 +46,7 @@ fn add_centre(points: &Points, nearest: &[f64], centre: [f64; 2], into: &mut [f6
         let distance = squared_distance([x, y], centre);
         *into = if distance < *nearest { distance } else { *nearest };
     }
-    into.iter()
-        .zip(&points.weight)
-        .map(|(distance, weight)| distance * weight)
-        .sum()
+    into.iter().zip(&points.weight).map(|(distance, weight)| distance * weight).sum()
 }
 
 /// Index drawn with probability proportional to `weights`; uniform if all are 0.

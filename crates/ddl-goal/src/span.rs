@@ -38,10 +38,7 @@ impl QuerySpan {
 /// `track`: at least [`QuerySpan::positions`] positions (m), `time_step` (s) apart.
 pub(crate) fn velocities(track: &[[f64; 2]], time_step: f64, span: QuerySpan) -> Result<Vec<[f64; 2]>, TrackError> {
     let needed = span.positions();
-    let read = track.get(..needed).ok_or(TrackError::TooShort {
-        positions: track.len(),
-        needed,
-    })?;
+    let read = track.get(..needed).ok_or(TrackError::TooShort { positions: track.len(), needed })?;
     check_finite(read)?;
     read.windows(2)
         .enumerate()
@@ -55,11 +52,7 @@ pub(crate) fn velocities(track: &[[f64; 2]], time_step: f64, span: QuerySpan) ->
 
 pub(crate) fn check_finite(positions: &[[f64; 2]]) -> Result<(), TrackError> {
     match positions.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
-        Some(index) => Err(TrackError::NonFinite {
-            index,
-            x: positions[index][0],
-            y: positions[index][1],
-        }),
+        Some(index) => Err(TrackError::NonFinite { index, x: positions[index][0], y: positions[index][1] }),
         None => Ok(()),
     }
 }

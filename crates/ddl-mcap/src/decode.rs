@@ -61,16 +61,9 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
             None if !is_occluded => None,
             number => Some(number.and_then(Value::as_f64).unwrap_or(f64::NAN)),
         };
-        let name = item
-            .pointer(name)
-            .filter(|name| name.is_number() || name.as_str().is_some_and(|it| !it.is_empty()));
+        let name = item.pointer(name).filter(|name| name.is_number() || name.as_str().is_some_and(|it| !it.is_empty()));
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
-        let class = |result: &Value| {
-            result
-                .pointer("/hypothesis/class_id")
-                .filter(|class| !class.is_null())
-                .map(text)
-        };
+        let class = |result: &Value| result.pointer("/hypothesis/class_id").filter(|class| !class.is_null()).map(text);
         let score = |result: &&Value| result["hypothesis"]["score"].as_f64().unwrap_or(0.0);
         let results = item["results"].as_array().into_iter().flatten();
         let likeliest = results.max_by(|a, b| score(a).total_cmp(&score(b)));
@@ -89,10 +82,7 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
     let seconds = part_of(stamp, &["sec", "secs"])?;
     let nanoseconds = part_of(stamp, &["nanosec", "nsec", "nsecs"])?;
     let microseconds = seconds.saturating_mul(1_000_000).saturating_add(nanoseconds / 1000);
-    let header = Header {
-        stamp: Time::of_microseconds(microseconds),
-        frame_id: frame_id(&message),
-    };
+    let header = Header { stamp: Time::of_microseconds(microseconds), frame_id: frame_id(&message) };
     let time = (microseconds != 0).then_some(microseconds);
     Ok((time, Observed::new(header, pedestrians)))
 }
@@ -119,9 +109,7 @@ fn of_lines(bytes: &[u8]) -> Result<Option<Decoded>, String> {
         return Err("a message holds the tracks of one moment".to_owned());
     };
     if let Some(scene) = &frame.scene {
-        return Err(format!(
-            "the track names the scene {scene}; record each scene on a topic of its own, without it"
-        ));
+        return Err(format!("the track names the scene {scene}; record each scene on a topic of its own, without it"));
     }
     let seen = frame.pedestrians.iter().map(|(id, position)| SeenPedestrian {
         name: frame.names.of(*id).to_string(),

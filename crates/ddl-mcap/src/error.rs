@@ -22,9 +22,6 @@ pub enum LogError {
 impl LogError {
     /// A way to say where a problem is.
     pub(crate) fn at(place: impl ToString) -> impl FnOnce(String) -> Self {
-        move |problem| Self::Read {
-            place: escaped(&place.to_string()),
-            problem: escaped(&problem),
-        }
+        move |problem| Self::Read { place: escaped(&place.to_string()), problem: escaped(&problem) }
     }
 }

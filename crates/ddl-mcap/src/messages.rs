@@ -54,10 +54,7 @@ impl Messages {
                 return Err("a record goes beyond the end of its chunk".to_owned());
             } else {
                 match self.reader.next_event() {
-                    None
-                    | Some(Ok(LinearReadEvent::Record {
-                        opcode: op::DATA_END, ..
-                    })) => return Ok(None),
+                    None | Some(Ok(LinearReadEvent::Record { opcode: op::DATA_END, .. })) => return Ok(None),
                     Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
                         let buffer = self.reader.insert(wanted.min(AT_ONCE));
                         match self.source.read(buffer) {
@@ -65,10 +62,7 @@ impl Messages {
                             read => self.reader.notify_read(read.map_err(text)?),
                         }
                     }
-                    Some(Ok(LinearReadEvent::Record {
-                        opcode: op::CHUNK,
-                        data,
-                    })) => {
+                    Some(Ok(LinearReadEvent::Record { opcode: op::CHUNK, data })) => {
                         (self.chunk, self.taken) = (unpacked(data)?, 0);
                     }
                     Some(Ok(LinearReadEvent::Record { opcode, data })) => {
@@ -151,9 +145,7 @@ fn unpacked(chunk: &[u8]) -> Result<Vec<u8>, String> {
     read.map_err(damaged)?;
     let crc = header.uncompressed_crc;
     if records.len() as u64 != header.uncompressed_size || (crc != 0 && crc32fast::hash(&records) != crc) {
-        return Err(damaged(format!(
-            "its checksum or size is wrong, or it is larger than {MOST} bytes"
-        )));
+        return Err(damaged(format!("its checksum or size is wrong, or it is larger than {MOST} bytes")));
     }
     Ok(records)
 }

@@ -57,9 +57,7 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
         })? {
             time = message.log_time as f64 / 1e9;
             let channel = &message.channel;
-            let topic = topics
-                .entry(channel.topic.clone())
-                .or_insert_with(|| Topic::of(channel));
+            let topic = topics.entry(channel.topic.clone()).or_insert_with(|| Topic::of(channel));
             topic.messages += 1;
             if asked.is_none_or(|asked| asked == channel.topic) {
                 let decoded = decode(&message);
@@ -72,9 +70,7 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
             }
         }
         if messages.is_cut {
-            notes.push(format!(
-                "{file_name} is cut off: what is whole was read, until {time:.6} s"
-            ));
+            notes.push(format!("{file_name} is cut off: what is whole was read, until {time:.6} s"));
         }
     }
     let (name, topic) = choose(topics, asked).map_err(LogError::at(path.display()))?;
@@ -85,9 +81,7 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
     }
     notes.insert(0, words);
     let frame_id = topic.frame_id.clone().filter(|frame_id| !frame_id.is_empty());
-    let recording = topic
-        .recording()
-        .map_err(LogError::at(format!("{}, topic {name}", path.display())))?;
+    let recording = topic.recording().map_err(LogError::at(format!("{}, topic {name}", path.display())))?;
     Ok(LoggedTracks {
         recording: recording.with_notes(notes.iter().map(|note| escaped(note)).collect()),
         topic: TrackTopic { files, name, frame_id },
@@ -102,10 +96,7 @@ fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(S
         some.collect::<Vec<_>>().join(", ")
     };
     let holds_tracks = |topic: &Topic| topic.is_logged.is_some();
-    let mut found = topics
-        .iter()
-        .filter(|(_, topic)| holds_tracks(topic))
-        .map(|(name, _)| name.clone());
+    let mut found = topics.iter().filter(|(_, topic)| holds_tracks(topic)).map(|(name, _)| name.clone());
     match (asked, found.next(), found.next()) {
         (_, Some(name), None) => Ok(topics.remove_entry(&name).unwrap_or_default()),
         (None, Some(_), _) => Err(format!("choose a topic by --topic: {}", listed(holds_tracks))),
@@ -138,23 +129,13 @@ struct Topic {
 
 impl Topic {
     fn of(channel: &Channel<'_>) -> Self {
-        Self {
-            kind: format!("{} as {}", type_name(channel), channel.message_encoding),
-            ..Self::default()
-        }
+        Self { kind: format!("{} as {}", type_name(channel), channel.message_encoding), ..Self::default() }
     }
 
     fn words(&self, name: &str) -> String {
         let (kind, messages, frame_id) = (&self.kind, self.messages, self.frame_id.as_deref().unwrap_or_default());
-        let logged = if self.is_logged == Some(true) {
-            "of the log"
-        } else {
-            "of the messages"
-        };
-        let left_out = self
-            .left_out
-            .iter()
-            .map(|(what, count)| format!("; {count} rows left out: {what}"));
+        let logged = if self.is_logged == Some(true) { "of the log" } else { "of the messages" };
+        let left_out = self.left_out.iter().map(|(what, count)| format!("; {count} rows left out: {what}"));
         let left_out: String = left_out.collect();
         let classes: Vec<&str> = self.classes.iter().map(String::as_str).collect();
         let classes = match &classes[..] {
@@ -178,9 +159,7 @@ impl Topic {
         let frame_id = self.frame_id.get_or_insert_with(|| observed.header.frame_id.clone());
         if *frame_id != observed.header.frame_id {
             let other = &observed.header.frame_id;
-            return Err(format!(
-                "positions in the frame {other:?}, but before in {frame_id:?}; record them in one"
-            ));
+            return Err(format!("positions in the frame {other:?}, but before in {frame_id:?}; record them in one"));
         }
         for (reason, count) in &observed.left_out {
             *self.left_out.entry((*reason).to_owned()).or_default() += count;
@@ -215,18 +194,12 @@ impl Topic {
     fn recording(self) -> Result<Recording, String> {
         let recording = Recording::in_usual_step("log", self.rows).map_err(|error| match error {
             RecordingError::Row(LiveError::Duplicate { pedestrian, frame }) => {
-                let name = self
-                    .words
-                    .get(&pedestrian)
-                    .map_or_else(|| pedestrian.to_string(), ToString::to_string);
+                let name = self.words.get(&pedestrian).map_or_else(|| pedestrian.to_string(), ToString::to_string);
                 let time = frame as f64 / 1e6;
                 format!("pedestrian {name} is there twice at {time:.6} s; record one tracker to a topic")
             }
             other => other.to_string(),
         });
-        Ok(recording?
-            .with_words(self.words)
-            .with_restarts(self.restarts)
-            .with_time_unit(Some(TimeUnit::Seconds)))
+        Ok(recording?.with_words(self.words).with_restarts(self.restarts).with_time_unit(Some(TimeUnit::Seconds)))
     }
 }

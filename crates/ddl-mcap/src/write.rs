@@ -50,9 +50,7 @@ impl<W: Write> ForecastLog<W> {
                     let schema =
                         schema.map(|schema| log.writer.add_schema(&schema.name, &schema.encoding, &schema.data));
                     let (schema, metadata) = (schema.transpose()?.unwrap_or(0), &channel.metadata);
-                    let id = log
-                        .writer
-                        .add_channel(schema, &channel.topic, &channel.message_encoding, metadata)?;
+                    let id = log.writer.add_channel(schema, &channel.topic, &channel.message_encoding, metadata)?;
                     let header = MessageHeader {
                         channel_id: id,
                         sequence: message.sequence,
@@ -83,16 +81,8 @@ impl<W: Write> ForecastLog<W> {
         microseconds: i64,
     ) -> Result<(), LogError> {
         let stamp = Time::of_microseconds(microseconds);
-        let header = &Header {
-            stamp,
-            frame_id: self.frame_id.as_deref().unwrap_or(FIXED_FRAME).to_owned(),
-        };
-        let moment = Moment {
-            window,
-            forecast,
-            header,
-            joint,
-        };
+        let header = &Header { stamp, frame_id: self.frame_id.as_deref().unwrap_or(FIXED_FRAME).to_owned() };
+        let moment = Moment { window, forecast, header, joint };
         let time = nanoseconds(microseconds)?;
         self.put("/ddl/forecasts", &moment.forecasts(), time)?;
         self.put("/ddl/markers", &moment.markers(), time)?;

@@ -58,14 +58,7 @@ fn read(file: &[u8], topic: Option<&str>) -> Result<LoggedTracks, String> {
 /// Microsecond, name and place of each row, in the order of times and names.
 fn rows(tracks: &LoggedTracks) -> Vec<(i64, String, f64, f64)> {
     let (seen, names) = (tracks.recording.observations().iter(), tracks.recording.names());
-    let row = seen.map(|row| {
-        (
-            row.frame,
-            names.of(row.pedestrian).to_string(),
-            row.position[0],
-            row.position[1],
-        )
-    });
+    let row = seen.map(|row| (row.frame, names.of(row.pedestrian).to_string(), row.position[0], row.position[1]));
     let mut rows: Vec<_> = row.collect();
     rows.sort_by(|a, b| (a.0, &a.1).cmp(&(b.0, &b.1)));
     rows
@@ -168,12 +161,7 @@ fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&Entry; 2]) -
     writer.finish()?;
     let (stamp, frame_id) = (Time::of_microseconds(2_000_003), frame_id.to_owned());
     let header = &Header { stamp, frame_id };
-    let moment = Moment {
-        window,
-        forecast,
-        header,
-        joint,
-    };
+    let moment = Moment { window, forecast, header, joint };
     let now = 2_000_003_000_u64;
     let made = |topic, kind, data| json!([[topic, kind, "ros2msg", "cdr"], 0, [now, now], data]);
     let mut expected = vec![
@@ -182,12 +170,7 @@ fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&Entry; 2]) -
         made("/ddl/paths", Path::TYPE, ddl_ros::write(&moment.likeliest_paths()[0])?),
     ];
     for (entry, number, time) in [(people[1], 0, 103_137_000_000_u64), (people[0], 1, 100_050_000_000)] {
-        let copied = json!([
-            ["/seen", People::TYPE, "any", "cdr"],
-            number,
-            [time, entry.3 + 7],
-            bytes(entry)
-        ]);
+        let copied = json!([["/seen", People::TYPE, "any", "cdr"], number, [time, entry.3 + 7], bytes(entry)]);
         expected.splice(0..0, topic.map(|_| copied));
     }
     for (message, expected) in MessageStream::new(&file)?.zip(&expected) {

@@ -55,10 +55,7 @@ impl SceneMemory {
             let head = head(&content).into_bytes();
             write_atomically(path, &[head, content].concat())
         });
-        written.map_err(|source| MemoryError::Write {
-            path: path.to_owned(),
-            source,
-        })
+        written.map_err(|source| MemoryError::Write { path: path.to_owned(), source })
     }
 
     /// Whether the first bytes of a file are those of a memory, even of another version or a damaged one.
@@ -72,14 +69,8 @@ impl SceneMemory {
     /// # Errors
     /// [`MemoryError::Read`] if the file cannot be read, [`MemoryError::File`] if its content is invalid or damaged.
     pub fn read(path: &Path) -> Result<Self, MemoryError> {
-        let failed = |source| MemoryError::Read {
-            path: path.to_owned(),
-            source,
-        };
-        let refused = |problem| MemoryError::File {
-            path: path.to_owned(),
-            problem,
-        };
+        let failed = |source| MemoryError::Read { path: path.to_owned(), source };
+        let refused = |problem| MemoryError::File { path: path.to_owned(), problem };
         let mut file = File::open(path).map_err(failed)?;
         let mut start = [0; HEAD];
         match file.read_exact(&mut start) {
@@ -92,9 +83,7 @@ impl SceneMemory {
         let mut content = Vec::new();
         file.take(MOST_BYTES + 1).read_to_end(&mut content).map_err(failed)?;
         if content.len() as u64 > MOST_BYTES {
-            return Err(refused(format!(
-                "it has more than {MOST_BYTES} bytes, which no memory has"
-            )));
+            return Err(refused(format!("it has more than {MOST_BYTES} bytes, which no memory has")));
         }
         if head(&content).as_bytes() != start {
             let problem = "it is damaged or cut off: its SHA-256 differs from the one in its first line";
@@ -143,10 +132,7 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
         memory.segments += track.segments();
     }
     if memory.segments > memory.capacity {
-        return Err(format!(
-            "it holds {} segments, more than its capacity {}",
-            memory.segments, memory.capacity
-        ));
+        return Err(format!("it holds {} segments, more than its capacity {}", memory.segments, memory.capacity));
     }
     Ok(memory)
 }

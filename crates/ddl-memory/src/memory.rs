@@ -89,10 +89,7 @@ impl SceneMemory {
     pub fn new(frame_step: i64, capacity: usize) -> Result<Self, MemoryError> {
         Clock::with_frame_step(frame_step).map_err(LiveError::from)?;
         if !(1..=LARGEST_CAPACITY).contains(&capacity) {
-            return Err(MemoryError::Capacity {
-                capacity,
-                largest: LARGEST_CAPACITY,
-            });
+            return Err(MemoryError::Capacity { capacity, largest: LARGEST_CAPACITY });
         }
         Ok(Self::empty(frame_step, capacity))
     }

@@ -74,10 +74,7 @@ pub(crate) struct Piece {
 impl Piece {
     /// The piece that holds these positions.
     fn of(path: &[Position]) -> Self {
-        let mut piece = Self {
-            motions: [[f32::INFINITY; LANES]; COMPONENTS],
-            path: Vec::with_capacity(PATH),
-        };
+        let mut piece = Self { motions: [[f32::INFINITY; LANES]; COMPONENTS], path: Vec::with_capacity(PATH) };
         for position in path {
             piece.add(*position);
         }
@@ -178,9 +175,7 @@ impl Piece {
     pub(crate) fn nearest_lane(&self, motion: &FirstMotion) -> usize {
         let distances = self.distances(motion);
         let lanes = 0..self.len();
-        lanes
-            .min_by(|&a, &b| distances[a].total_cmp(&distances[b]))
-            .unwrap_or(0)
+        lanes.min_by(|&a, &b| distances[a].total_cmp(&distances[b])).unwrap_or(0)
     }
 }
 

@@ -103,10 +103,6 @@ impl SceneMemory {
 
     fn ensure_step_of(&self, recording: &Recording) -> Result<(), MemoryError> {
         let (memory, recording) = (self.frame_step(), recording.frame_step());
-        if memory == recording {
-            Ok(())
-        } else {
-            Err(MemoryError::OtherFrameStep { memory, recording })
-        }
+        if memory == recording { Ok(()) } else { Err(MemoryError::OtherFrameStep { memory, recording }) }
     }
 }

@@ -96,11 +96,7 @@ pub(crate) struct RunningTrack {
 impl RunningTrack {
     pub(crate) fn new(frame: i64, position: Position) -> Self {
         let pieces = vec![Piece::begin(position)];
-        Self {
-            last: frame,
-            track: Track { pieces },
-            between: None,
-        }
+        Self { last: frame, track: Track { pieces }, between: None }
     }
 
     /// The frame of its last row; `None` if that cannot be, in a file.

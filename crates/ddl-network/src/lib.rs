@@ -72,10 +72,7 @@
 //! rayon's threads. The same holds for the proposals of a pedestrian. They are computed in `f32` with the fastest
 //! instructions of the machine: AVX-512 or AVX2 on x86-64, otherwise portable code. Between instruction sets results
 //! agree up to rounding.
-#![cfg_attr(
-    not(feature = "training"),
-    allow(dead_code, reason = "only training uses the backward passes")
-)]
+#![cfg_attr(not(feature = "training"), allow(dead_code, reason = "only training uses the backward passes"))]
 
 pub mod backbone;
 pub mod backend;

@@ -50,11 +50,7 @@ pub(crate) fn tracks(
         let fine = |coordinate: &f64| coordinate.abs() <= COORDINATE_LIMIT;
         if !unseen && !position.iter().all(fine) {
             let [i, t] = [index / steps, index % steps];
-            let rule = if nan {
-                "NaN in both if the pedestrian was not observed"
-            } else {
-                "no NaN"
-            };
+            let rule = if nan { "NaN in both if the pedestrian was not observed" } else { "no NaN" };
             return Err(PyValueError::new_err(format!(
                 "{name}[{i}, {t}] is {position:?}: a position is two finite numbers of at most 1e7 m, {rule}"
             )));
@@ -67,10 +63,7 @@ pub(crate) fn tracks(
 /// `(n, 2)` positions (metres), all finite.
 pub(crate) fn points(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<Vec<Position>> {
     let shape = array.shape();
-    ensure!(
-        shape[1] == 2,
-        "{name} must have the shape (n, 2): x and y in metres; found {shape:?}"
-    );
+    ensure!(shape[1] == 2, "{name} must have the shape (n, 2): x and y in metres; found {shape:?}");
     let points = flat(name, array)?.as_chunks::<2>().0;
     if let Some(row) = points.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
         return Err(PyValueError::new_err(format!(

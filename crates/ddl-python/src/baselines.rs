@@ -36,11 +36,7 @@ pub(crate) fn baseline<'py>(
     let forecast = forecast.transpose().map_err(of_any)?.map(CertifiedForecast::from);
     let goals = goals.map(|goals| goals.shape()[1]);
     let many = if name == "angular_noise" { 20 } else { 1 };
-    let empty = EmptyFields {
-        hypotheses: goals.unwrap_or(many),
-        goals: goals.is_some(),
-        ..EmptyFields::default()
-    };
+    let empty = EmptyFields { hypotheses: goals.unwrap_or(many), goals: goals.is_some(), ..EmptyFields::default() };
     parts(py, &scene, forecast.as_ref(), empty)
 }
 

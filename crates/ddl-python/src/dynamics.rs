@@ -84,11 +84,7 @@ impl Flow {
 fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f64, 2>> {
     let matrix = Matrix2::new(xx, xy, yx, yy);
     let finite = matrix.iter().all(|x| x.is_finite());
-    let smallest = if finite {
-        matrix.symmetric_eigenvalues().min()
-    } else {
-        f64::NAN
-    };
+    let smallest = if finite { matrix.symmetric_eigenvalues().min() } else { f64::NAN };
     let symmetric = (xy - yx).abs() <= 1e-12 * (xx.abs() + yy.abs());
     // NaN is not positive
     ensure!(

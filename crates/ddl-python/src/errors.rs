@@ -55,9 +55,6 @@ pub(crate) fn parsed<T: std::str::FromStr<Err: Error + 'static>>(name: &str) -> 
 
 /// Checks a distance in metres.
 pub(crate) fn not_negative(name: &str, metres: f64) -> PyResult<()> {
-    ensure!(
-        metres >= 0.0 && metres.is_finite(),
-        "{name} is {metres}; it must be a number of metres, 0 or more"
-    );
+    ensure!(metres >= 0.0 && metres.is_finite(), "{name} is {metres}; it must be a number of metres, 0 or more");
     Ok(())
 }

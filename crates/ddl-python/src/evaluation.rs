@@ -57,9 +57,7 @@ pub(crate) fn windows<'py>(
             "test" => fold.test_windows(rule),
             "training" => fold.training_windows(rule),
             _ => {
-                return Err(PyValueError::new_err(format!(
-                    "part must be 'test' or 'training', found {part:?}"
-                )));
+                return Err(PyValueError::new_err(format!("part must be 'test' or 'training', found {part:?}")));
             }
         }
     };
@@ -166,20 +164,13 @@ impl TestSet {
         py: Python<'_>,
         protocol: &str,
         name: &str,
-        forecasts: Vec<(
-            Paths<'_>,
-            Option<PyReadonlyArray2<'_, f64>>,
-            Option<PyReadonlyArray3<'_, f64>>,
-        )>,
+        forecasts: Vec<(Paths<'_>, Option<PyReadonlyArray2<'_, f64>>, Option<PyReadonlyArray3<'_, f64>>)>,
     ) -> PyResult<String> {
         let protocol: Protocol = parsed(protocol)?;
         let made = forecasts.iter().enumerate().map(|(index, (paths, weights, goals))| {
             forecast(paths, weights.as_ref(), goals.as_ref()).map_err(|error| {
                 let frame = self.windows.get(index).map(Window::start_frame);
-                PyValueError::new_err(format!(
-                    "window {index} of {} (start frame {frame:?}): {error}",
-                    self.fold
-                ))
+                PyValueError::new_err(format!("window {index} of {} (start frame {frame:?}): {error}", self.fold))
             })
         });
         let made: Vec<ddl::Forecast> = made.collect::<PyResult<_>>()?;
@@ -214,11 +205,7 @@ pub(crate) fn evaluate_model(
         ddl::evaluate(&model, &dataset, &request, |now| {
             // Sending fails when the call was interrupted and the receiver was dropped.
             let sent = sender.send((now.pedestrians.done, now.pedestrians.total));
-            if sent.is_err() || stop.is_asked() {
-                ControlFlow::Break(())
-            } else {
-                ControlFlow::Continue(())
-            }
+            if sent.is_err() || stop.is_asked() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     };
     let tell = |py: Python<'_>| {

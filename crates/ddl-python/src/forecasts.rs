@@ -35,20 +35,13 @@ pub(crate) fn parts<'py>(
     let rows = &observed.rows;
     let (n, k) = (rows.len(), forecast.map_or(empty.hypotheses, Forecast::hypotheses));
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
-    let pairs = || {
-        rows.iter()
-            .map(of_row)
-            .flat_map(move |row| (0..k).map(move |k| (row, k)))
-    };
+    let pairs = || rows.iter().map(of_row).flat_map(move |row| (0..k).map(move |k| (row, k)));
     let paths = pairs().flat_map(|(row, k)| match row {
         Some((forecast, i)) => forecast.hypothesis(i, k).to_vec(),
         None => vec![[f64::NAN; 2]; HORIZON],
     });
     let weights = pairs().map(|(row, k)| row.map_or(f64::NAN, |(forecast, i)| forecast.weight(i, k)));
-    let goals = pairs().map(|(row, k)| {
-        row.and_then(|(forecast, i)| forecast.goal(i, k))
-            .unwrap_or([f64::NAN; 2])
-    });
+    let goals = pairs().map(|(row, k)| row.and_then(|(forecast, i)| forecast.goal(i, k)).unwrap_or([f64::NAN; 2]));
     let certified = pairs().map(|(row, k)| row.and_then(|(forecast, i)| forecast.certified(i, k)) == Some(true));
     let familiarity = rows.iter().map(|row| {
         let familiarity = of_row(row).and_then(|(forecast, i)| forecast.familiarity(i));
@@ -194,10 +187,7 @@ pub(crate) fn region_radii<'py>(
     let (past, uncertainty) = observed;
     let table: RegionTable = serde_json::from_str(region_table).map_err(of_any)?;
     let [low, high] = table.range();
-    ensure!(
-        (low..=high).contains(&level),
-        "level must be a probability from {low} to {high}; found {level}"
-    );
+    ensure!((low..=high).contains(&level), "level must be a probability from {low} to {high}; found {level}");
     let [n, k] = [weights.shape()[0], weights.shape()[1]];
     let rows = weights.as_array();
     let forecast_rows: Vec<usize> = (0..n).filter(|&i| !rows[[i, 0]].is_nan()).collect();
@@ -210,11 +200,7 @@ pub(crate) fn region_radii<'py>(
             let observed: Vec<_> = observed.collect();
             Pace::of(&observed, TIME_STEP, uncertainty.as_array()[i])
         });
-        let spread = Spread {
-            scales: scales.collect(),
-            paces: paces.collect(),
-            regions: table.into(),
-        };
+        let spread = Spread { scales: scales.collect(), paces: paces.collect(), regions: table.into() };
         let positions = vec![[0.0; 2]; forecast_rows.len() * k * HORIZON];
         let forecast = Forecast::new(forecast_rows.len(), k, positions, of_known, None)
             .and_then(|forecast| forecast.with_spread(spread))

@@ -19,11 +19,7 @@ impl GoalEstimator {
     fn new(experts: PyReadonlyArray3<'_, f64>, similar: usize, goals: usize) -> PyResult<Self> {
         let tracks = tracks("experts", &experts, WINDOW, false)?;
         let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(of_any)?;
-        let params = GoalEstimatorParams {
-            experts: similar,
-            clusters: goals,
-            ..Default::default()
-        };
+        let params = GoalEstimatorParams { experts: similar, clusters: goals, ..Default::default() };
         let estimator = ddl::goal::GoalEstimator::new(params, library).map_err(of_any)?;
         Ok(Self(Arc::new(estimator)))
     }

@@ -97,11 +97,7 @@ fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     // 0: the number of cores, or the environment variable RAYON_NUM_THREADS.
     let threads = wanted.unwrap_or(0);
     let pool = Arc::new(ddl::thread_pool(threads).map_err(of_any)?);
-    let old = held.replace(Pool {
-        process,
-        count: threads,
-        threads: Arc::clone(&pool),
-    });
+    let old = held.replace(Pool { process, count: threads, threads: Arc::clone(&pool) });
     if let Some(old) = old.filter(|old| old.process != process) {
         // Its threads exist only in the parent: there is nothing to join.
         std::mem::forget(old);

@@ -46,17 +46,11 @@ struct Answer {
 impl WatchedPlace {
     fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
         let forecast = if self.joint {
-            self.live
-                .push_joint(frame, seen, None)?
-                .map(|now| (now.window, now.forecast.into()))
+            self.live.push_joint(frame, seen, None)?.map(|now| (now.window, now.forecast.into()))
         } else if self.certificates {
-            self.live
-                .push_certified(frame, seen)?
-                .map(|now| (now.window, now.forecast))
+            self.live.push_certified(frame, seen)?.map(|now| (now.window, now.forecast))
         } else {
-            self.live
-                .push(frame, seen)?
-                .map(|now| (now.window, now.forecast.into()))
+            self.live.push(frame, seen)?.map(|now| (now.window, now.forecast.into()))
         };
         // The frame has been observed, so a full disk must not discard its forecast.
         let written = MemoryFile::write_if_due(self.file.as_mut(), self.live.place());
@@ -67,11 +61,7 @@ impl WatchedPlace {
             let when = tracks.clock().words(misfit.tick);
             (misfit.pedestrian.0, misfit.distance, when)
         });
-        Ok(Answer {
-            forecast,
-            misfits: misfits.collect(),
-            unwritten,
-        })
+        Ok(Answer { forecast, misfits: misfits.collect(), unwritten })
     }
 
     /// Writes the memory; on success, closes its file.
@@ -95,10 +85,7 @@ impl Turn {
     /// Waits until other calls have returned the state.
     fn take(py: Python<'_>, slot: &SharedPlace) -> PyResult<Self> {
         let watching = wait_for(py, || held(slot).take())?;
-        Ok(Self {
-            slot: Arc::clone(slot),
-            watching: Some(watching),
-        })
+        Ok(Self { slot: Arc::clone(slot), watching: Some(watching) })
     }
 
     /// Never `None`: the state is present until this is dropped.
@@ -148,12 +135,7 @@ impl Live {
             live = live.remembering(read).map_err(raised)?;
             file = Some(opened);
         }
-        let watching = WatchedPlace {
-            live,
-            file,
-            certificates,
-            joint,
-        };
+        let watching = WatchedPlace { live, file, certificates, joint };
         let place = Arc::new(Mutex::new(Some(Box::new(watching))));
         Ok(Self { place, clock })
     }
@@ -172,10 +154,7 @@ impl Live {
     ) -> PyResult<(Option<Bound<'py, PyDict>>, Vec<(i64, f64, String)>, Option<String>)> {
         let moments = match unit {
             Some(unit) => Moments::of_times(parsed(unit)?),
-            None => Moments {
-                clock: self.clock,
-                unit: None,
-            },
+            None => Moments { clock: self.clock, unit: None },
         };
         let positions = points("xy", &xy)?;
         ensure!(
@@ -199,9 +178,7 @@ impl Live {
         let Some(answer) = now.transpose().map_err(|error| wrong_frame(error, moments, &names))? else {
             return Ok((None, Vec::new(), None));
         };
-        let parts = answer
-            .forecast
-            .map(|(window, forecast)| named_parts(py, &window, &forecast, moments));
+        let parts = answer.forecast.map(|(window, forecast)| named_parts(py, &window, &forecast, moments));
         Ok((parts.transpose()?, answer.misfits, answer.unwritten))
     }
 

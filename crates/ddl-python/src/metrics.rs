@@ -27,12 +27,7 @@ fn window(
         Some(past) => tracks("past", past, OBSERVED, false)?,
         None => truth.iter().map(|future| vec![future[0]; OBSERVED]).collect(),
     };
-    ensure!(
-        pasts.len() == truth.len(),
-        "past has {} pedestrians, truth has {}",
-        pasts.len(),
-        truth.len()
-    );
+    ensure!(pasts.len() == truth.len(), "past has {} pedestrians, truth has {}", pasts.len(), truth.len());
     let whole = pasts.into_iter().zip(truth);
     let whole: Vec<Vec<Position>> = whole.map(|(past, future)| [past, future].concat()).collect();
     let ids = (0..whole.len() as i64).map(PedestrianId).collect();
@@ -128,9 +123,7 @@ pub(crate) fn collisions(
     let slices: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
     let n = slices.len();
     let nearest = |i: usize| {
-        let others = (0..n)
-            .filter(|j| *j != i)
-            .map(|j| closest_approach(slices[i], slices[j]));
+        let others = (0..n).filter(|j| *j != i).map(|j| closest_approach(slices[i], slices[j]));
         others.fold(f64::INFINITY, f64::min)
     };
     let (collides, nearest) = py.detach(|| {

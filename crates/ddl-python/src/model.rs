@@ -45,16 +45,8 @@ impl ForecastOptions {
                  {samples}. Weights and regions belong to all {hypotheses}; for fewer, select those with the largest \
                  weights"
         );
-        ensure!(
-            !joint || samples != 1,
-            "joint futures are of all hypotheses: leave out samples=1"
-        );
-        Ok(Self {
-            one: samples == 1,
-            certificates,
-            joint,
-            given: None,
-        })
+        ensure!(!joint || samples != 1, "joint futures are of all hypotheses: leave out samples=1");
+        Ok(Self { one: samples == 1, certificates, joint, given: None })
     }
 
     fn forecast(&self, model: &Ddl, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
@@ -235,9 +227,7 @@ impl Model {
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(|one| &one.forecast).collect();
         let (name, clock) = (recording.tracks.name(), recording.moments.clock);
-        let page = player
-            .to_html(&forecasts, name, observed.warning.as_ref(), clock)
-            .map_err(raised)?;
+        let page = player.to_html(&forecasts, name, observed.warning.as_ref(), clock).map_err(raised)?;
         Ok((page, doubt))
     }
 }

@@ -16,16 +16,10 @@ pub(crate) struct Moments {
 
 impl Moments {
     /// Frame numbers that are ticks.
-    pub(crate) const FRAMES: Self = Self {
-        clock: Clock::STEPS,
-        unit: None,
-    };
+    pub(crate) const FRAMES: Self = Self { clock: Clock::STEPS, unit: None };
 
     pub(crate) fn of_times(unit: TimeUnit) -> Self {
-        Self {
-            clock: Clock::with_stamps(unit),
-            unit: Some(unit),
-        }
+        Self { clock: Clock::with_stamps(unit), unit: Some(unit) }
     }
 
     /// A number, or a `datetime64`.
@@ -81,9 +75,6 @@ impl Moments {
 
 /// The clock of frame numbers that count so many a second.
 pub(crate) fn clock_of_rate(fps: f64) -> PyResult<Clock> {
-    ensure!(
-        fps.is_finite() && fps > 0.0,
-        "fps must be a finite number above 0, the frames per second; found {fps}"
-    );
+    ensure!(fps.is_finite() && fps > 0.0, "fps must be a finite number above 0, the frames per second; found {fps}");
     Clock::with_frame_time(fps.recip()).map_err(of_any)
 }

@@ -48,11 +48,7 @@ impl Observed {
     /// All pedestrians of a window, in its order.
     pub(crate) fn of_window(window: Window) -> Self {
         let rows = (0..window.len()).map(Some).collect();
-        Self {
-            window: Some(window),
-            rows,
-            misfits: Vec::new(),
-        }
+        Self { window: Some(window), rows, misfits: Vec::new() }
     }
 
     /// Text about positions of the array that do not fit their tracks.

@@ -43,11 +43,7 @@ fn on_clock(rows: Tracks, fps: Option<f64>, frame_step: Option<i64>) -> PyResult
     );
     // `TimedRecording` names seconds per frame in its error; this one names `fps`.
     fps.map(clock_of_rate).transpose()?;
-    let given = TrackUnits {
-        fps,
-        frame_step,
-        ..TrackUnits::default()
-    };
+    let given = TrackUnits { fps, frame_step, ..TrackUnits::default() };
     let timed = TimedRecording::new(&rows, &given, &TrackUnits::default()).map_err(raised)?;
     let stated = rows.stated_frame_time().filter(|_| !is_given).map(f64::recip);
     let (clock, tracks) = (timed.clock, Arc::new(timed.recording.with_notes(timed.notes)));
@@ -71,12 +67,7 @@ impl Recording {
     /// A recording whose frames are ticks.
     pub(crate) fn of_ticks(tracks: Tracks) -> Self {
         let tracks = Arc::new(tracks);
-        Self {
-            rows: Arc::clone(&tracks),
-            tracks,
-            moments: Moments::FRAMES,
-            fps: None,
-        }
+        Self { rows: Arc::clone(&tracks), tracks, moments: Moments::FRAMES, fps: None }
     }
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast.

@@ -28,11 +28,7 @@ pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
         rows.shape()
     );
     let points = flat("plan", rows)?.as_chunks::<4>().0.iter();
-    let point = |&[time, x, y, radius]: &[f64; 4]| PlanPoint {
-        time,
-        position: [x, y],
-        radius,
-    };
+    let point = |&[time, x, y, radius]: &[f64; 4]| PlanPoint { time, position: [x, y], radius };
     Plan::new(points.map(point).collect()).map_err(of_any)
 }
 
@@ -40,22 +36,12 @@ fn futures((past, deviations, paths, weights, spread): &JointArrays<'_>) -> PyRe
     let observed = tracks("past", past, OBSERVED, false)?;
     let ids = (0..observed.len() as i64).map(PedestrianId).collect();
     let paces = observed.iter().map(|track| Pace::of(track, TIME_STEP, 0.0)).collect();
-    let quality = |&deviation: &f64| ObservationQuality {
-        deviation,
-        ..ObservationQuality::default()
-    };
+    let quality = |&deviation: &f64| ObservationQuality { deviation, ..ObservationQuality::default() };
     let qualities = flat("deviation", deviations)?.iter().map(quality).collect();
-    let window = Window::new("arrays", 0, 1, ids, observed)
-        .map_err(of_any)?
-        .with_qualities(qualities);
-    let spread = Spread {
-        scales: flat("spread", spread)?.to_vec(),
-        paces,
-        regions: ddl::region_table().clone().into(),
-    };
-    let forecast = forecast(paths, Some(weights), None)?
-        .with_spread(spread)
-        .map_err(of_any)?;
+    let window = Window::new("arrays", 0, 1, ids, observed).map_err(of_any)?.with_qualities(qualities);
+    let spread =
+        Spread { scales: flat("spread", spread)?.to_vec(), paces, regions: ddl::region_table().clone().into() };
+    let forecast = forecast(paths, Some(weights), None)?.with_spread(spread).map_err(of_any)?;
     Futures::new(&window, forecast).map_err(of_any)
 }
 
@@ -80,13 +66,13 @@ pub(crate) fn risks<'py>(
     let futures = futures(&joint)?;
     let plans = plans.iter().map(plan).collect::<PyResult<Vec<_>>>()?;
     let (count, people) = (plans.len(), futures.pedestrians());
-    let risks = run(py, move |_| {
-        if seen {
-            futures.risks_if_seen(&plans, within, ego)
-        } else {
-            futures.risks(&plans, within, ego)
-        }
-    })?;
+    let risks =
+        run(
+            py,
+            move |_| {
+                if seen { futures.risks_if_seen(&plans, within, ego) } else { futures.risks(&plans, within, ego) }
+            },
+        )?;
     let risks = risks.map_err(of_any)?;
     let of_each = risks.iter().flat_map(|risk| risk.pedestrians.clone());
     Ok([
@@ -110,10 +96,7 @@ pub(crate) fn clearances<'py>(
     let clearances = run(py, move |_| futures.clearances(&plans))?.map_err(of_any)?;
     let of_each = clearances.iter().flat_map(|clearance| clearance.pedestrians.clone());
     let nearest = clearances.iter().map(|clearance| clearance.nearest);
-    Ok([
-        array(py, nearest.collect(), [count])?,
-        array(py, of_each.collect(), [count, people])?,
-    ])
+    Ok([array(py, nearest.collect(), [count])?, array(py, of_each.collect(), [count, people])?])
 }
 
 /// Probabilities `(times, height, width)`, times, and the lowest corner, of an area or of all paths and a margin.

@@ -32,9 +32,9 @@ macro_rules! in_dimension {
                 const $D: usize = 128;
                 $body
             }
-            components => Err(PyValueError::new_err(format!(
-                "a step must have 1 to 128 components, found {components}"
-            ))),
+            components => {
+                Err(PyValueError::new_err(format!("a step must have 1 to 128 components, found {components}")))
+            }
         }
     };
 }
@@ -193,8 +193,7 @@ fn all_steps<const D: usize>(
 
 fn sequences<'py>(objects: &[Bound<'py, PyAny>], name: &str) -> PyResult<Vec<PyReadonlyArray2<'py, f64>>> {
     let each = (0_usize..).zip(objects);
-    each.map(|(index, object)| sequence(object, &format!("{name}[{index}]")))
-        .collect()
+    each.map(|(index, object)| sequence(object, &format!("{name}[{index}]"))).collect()
 }
 
 fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<usize> {
@@ -228,10 +227,7 @@ impl SearchIndex {
             });
             Ok(prepare)
         })?;
-        Ok(Self {
-            prepare,
-            candidates: arrays.len(),
-        })
+        Ok(Self { prepare, candidates: arrays.len() })
     }
 
     fn __len__(&self) -> usize {

@@ -11,12 +11,7 @@ pub enum ReportError {
         "two results of `{row}` on fold `{fold}` name the same conditions but differ \
          (minADE {first} and {second}); remove one of them, or give them different seeds or names"
     )]
-    Conflict {
-        row: String,
-        fold: String,
-        first: f64,
-        second: f64,
-    },
+    Conflict { row: String, fold: String, first: f64, second: f64 },
     #[error("the report has format {found}; this version reads format {supported}")]
     Format { found: u32, supported: u32 },
     #[error("not a report: {0}")]
@@ -28,12 +23,7 @@ pub enum ReportError {
     #[error("{path}: {source}", path = path.display())]
     File { path: PathBuf, source: std::io::Error },
     #[error("moment {index} (recording `{recording}`, frame {frame}): {problem}")]
-    Moment {
-        index: usize,
-        recording: String,
-        frame: i64,
-        problem: String,
-    },
+    Moment { index: usize, recording: String, frame: i64, problem: String },
     #[error("the window holds {expected} pedestrians, the forecast {found}")]
     Pedestrians { expected: usize, found: usize },
 }

@@ -132,11 +132,7 @@ pub(crate) fn published_table(rows: &[PublishedRow], decimals: usize) -> Table {
             None => row.source.clone(),
         };
         let start = [row.method.clone()].into_iter();
-        table.row(
-            start
-                .chain(cells(&row.folds, row.mean, decimals))
-                .chain([convention, source]),
-        );
+        table.row(start.chain(cells(&row.folds, row.mean, decimals)).chain([convention, source]));
     }
     table
 }
@@ -167,10 +163,7 @@ pub(crate) fn measured_table() -> Table {
             Some(ade) => with_mean(ade).map(|error| format!("{error:.3}")).collect(),
             None => vec!["-".to_owned(); 6],
         };
-        let cells = ade
-            .iter()
-            .zip(with_mean(row.fde))
-            .map(|(ade, fde)| format!("{ade}/{fde:.3}"));
+        let cells = ade.iter().zip(with_mean(row.fde)).map(|(ade, fde)| format!("{ade}/{fde:.3}"));
         let end = [row.remark.clone().unwrap_or_default()];
         table.row([row.method.clone()].into_iter().chain(cells).chain(end));
     }

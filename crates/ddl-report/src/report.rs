@@ -45,11 +45,7 @@ impl Report {
     /// # Errors
     /// Two rows name the same conditions and hold different scores.
     pub fn new(title: impl Into<String>, rows: impl IntoIterator<Item = ResultRow>) -> Result<Self, ReportError> {
-        let mut report = Self {
-            format: FORMAT,
-            title: title.into(),
-            rows: Vec::new(),
-        };
+        let mut report = Self { format: FORMAT, title: title.into(), rows: Vec::new() };
         report.extend(rows)?;
         Ok(report)
     }
@@ -114,11 +110,7 @@ impl Report {
     pub fn to_json(&self) -> Result<String, ReportError> {
         let rows: Vec<String> = self.rows.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;
         let title = serde_json::to_string(&self.title)?;
-        Ok(format!(
-            "{{\"format\":{},\"title\":{title},\"rows\":[\n{}\n]}}\n",
-            self.format,
-            rows.join(",\n")
-        ))
+        Ok(format!("{{\"format\":{},\"title\":{title},\"rows\":[\n{}\n]}}\n", self.format, rows.join(",\n")))
     }
 
     /// Reads what [`Report::to_json`] wrote.
@@ -128,10 +120,7 @@ impl Report {
     pub fn from_json(text: &str) -> Result<Self, ReportError> {
         let read: Self = serde_json::from_str(text).map_err(ReportError::Json)?;
         if read.format != FORMAT {
-            return Err(ReportError::Format {
-                found: read.format,
-                supported: FORMAT,
-            });
+            return Err(ReportError::Format { found: read.format, supported: FORMAT });
         }
         Self::new(read.title, read.rows)
     }
@@ -149,14 +138,9 @@ impl Report {
     /// # Errors
     /// The file cannot be read, or as [`Report::from_json`].
     pub fn load(path: &Path) -> Result<Self, ReportError> {
-        let in_file = |source| ReportError::File {
-            path: path.to_owned(),
-            source,
-        };
+        let in_file = |source| ReportError::File { path: path.to_owned(), source };
         let text = std::fs::read_to_string(path).map_err(in_file)?;
-        Self::from_json(&text).map_err(|source| ReportError::Unreadable {
-            path: path.to_owned(),
-            source: Box::new(source),
-        })
+        Self::from_json(&text)
+            .map_err(|source| ReportError::Unreadable { path: path.to_owned(), source: Box::new(source) })
     }
 }

@@ -161,9 +161,9 @@ fn pedestrian(window: &Window, forecast: &Forecast, truth: &[Position], i: usize
             positions: positions(path),
             radii: match forecast.regions() {
                 None => Vec::new(),
-                Some(_) => (0..HORIZON)
-                    .map(|t| round(forecast.region_radius(i, k, t, REGION).unwrap_or(0.0)))
-                    .collect(),
+                Some(_) => {
+                    (0..HORIZON).map(|t| round(forecast.region_radius(i, k, t, REGION).unwrap_or(0.0))).collect()
+                }
             },
             goal: goal.map(|goal| goal.map(round)),
             decreasing: goal.map(|goal| RolloutStability::of(last, path, goal).decreasing),

@@ -44,10 +44,8 @@ pub fn read<M: Message>(bytes: &[u8]) -> Result<M, RosError> {
 /// None for the messages of this crate.
 pub fn write<M: Message>(message: &M) -> Result<Vec<u8>, RosError> {
     let mut bytes = vec![0, LITTLE_ENDIAN as u8, 0, 0];
-    let body = cdr_encoding::to_vec::<M, LittleEndian>(message).map_err(|source| RosError::Cdr {
-        type_name: M::TYPE,
-        source,
-    })?;
+    let body = cdr_encoding::to_vec::<M, LittleEndian>(message)
+        .map_err(|source| RosError::Cdr { type_name: M::TYPE, source })?;
     bytes.extend(body);
     Ok(bytes)
 }

@@ -6,10 +6,7 @@ const STANDARD_SEPARATOR: &str = "\n===\n";
 
 const OWN: [(&str, &str); 3] = [
     ("ddl_msgs/Forecasts", include_str!("../msg/Forecasts.msg")),
-    (
-        "ddl_msgs/PedestrianForecast",
-        include_str!("../msg/PedestrianForecast.msg"),
-    ),
+    ("ddl_msgs/PedestrianForecast", include_str!("../msg/PedestrianForecast.msg")),
     ("ddl_msgs/Hypothesis", include_str!("../msg/Hypothesis.msg")),
 ];
 

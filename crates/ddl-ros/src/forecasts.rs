@@ -66,16 +66,10 @@ impl Moment<'_> {
     pub fn likeliest_paths(&self) -> Vec<Path> {
         let paths = (0..self.window.len()).map(|i| {
             let poses = self.likeliest(i).enumerate().map(|(step, position)| PoseStamped {
-                header: Header {
-                    stamp: self.header.stamp.after(TIME_STEP * step as f64),
-                    ..self.header.clone()
-                },
+                header: Header { stamp: self.header.stamp.after(TIME_STEP * step as f64), ..self.header.clone() },
                 pose: pose(position),
             });
-            Path {
-                header: self.header.clone(),
-                poses: poses.collect(),
-            }
+            Path { header: self.header.clone(), poses: poses.collect() }
         });
         paths.collect()
     }
@@ -102,9 +96,7 @@ impl Moment<'_> {
                 ends.colors.push(blue((self.forecast.weight(i, k) / most) as f32));
             }
         }
-        MarkerArray {
-            markers: vec![lines, ends],
-        }
+        MarkerArray { markers: vec![lines, ends] }
     }
 
     fn present(&self, i: usize) -> Position {
@@ -123,10 +115,7 @@ impl Moment<'_> {
 pub fn occupancy_grid(grid: &Occupancy, header: &Header) -> OccupancyGrid {
     let [width, height] = grid.area.size();
     OccupancyGrid {
-        header: Header {
-            stamp: header.stamp.after(grid.time),
-            ..header.clone()
-        },
+        header: Header { stamp: header.stamp.after(grid.time), ..header.clone() },
         info: MapMetaData {
             map_load_time: header.stamp,
             resolution: grid.area.cell() as f32,
@@ -139,10 +128,7 @@ pub fn occupancy_grid(grid: &Occupancy, header: &Header) -> OccupancyGrid {
 }
 
 fn pose(position: Position) -> Pose {
-    Pose {
-        position: position.into(),
-        ..Pose::default()
-    }
+    Pose { position: position.into(), ..Pose::default() }
 }
 
 /// As hypotheses are in all pictures.

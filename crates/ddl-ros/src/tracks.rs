@@ -22,11 +22,7 @@ impl Observed {
     /// The pedestrians of a message without those that cannot be used, which are counted.
     pub fn new(header: Header, pedestrians: Vec<SeenPedestrian>) -> Self {
         let (frame, left_out) = (header.frame_id.clone(), BTreeMap::new());
-        let mut observed = Self {
-            header,
-            pedestrians,
-            left_out,
-        };
+        let mut observed = Self { header, pedestrians, left_out };
         observed.keep("occluded", |seen| !seen.is_occluded);
         let is_alike = |seen: &SeenPedestrian| seen.frame_id.is_empty() || seen.frame_id == frame;
         observed.keep("in another frame", is_alike);
@@ -159,12 +155,7 @@ fn checked<M: Message>(
         return Err(RosError::NoTime { type_name });
     }
     if let Some(index) = pedestrians.iter().position(|seen| seen.name.is_empty()) {
-        return Err(RosError::NoId {
-            type_name,
-            field,
-            index,
-            id,
-        });
+        return Err(RosError::NoId { type_name, field, index, id });
     }
     Ok(Observed::new(header, pedestrians))
 }

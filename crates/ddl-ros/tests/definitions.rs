@@ -72,12 +72,7 @@ fn is_described<M: Message + std::fmt::Debug>(random: &[u8]) {
     });
     let (definitions, random) = (definitions.collect::<HashMap<_, _>>(), random.iter().cycle());
     assert_eq!(definitions.len(), 1 + text.matches(&rule).count(), "{text}");
-    let mut writer = Writer {
-        definitions,
-        random,
-        body: Vec::new(),
-        names: Vec::new(),
-    };
+    let mut writer = Writer { definitions, random, body: Vec::new(), names: Vec::new() };
     writer.value("");
     let bytes = [&[0, 1, 0, 0], &writer.body[..]].concat();
     let message: M = read(&bytes).expect(M::TYPE);
@@ -111,20 +106,10 @@ fn the_package_of_ros_has_the_version_of_the_crate() {
 
 #[test]
 fn times_are_whole_microseconds_on_both_sides_of_0() {
-    for (microseconds, sec, nanosec) in [
-        (1_000_005, 1, 5_000),
-        (-1, -1, 999_999_000),
-        (-2_500_000, -3, 500_000_000),
-    ] {
+    for (microseconds, sec, nanosec) in [(1_000_005, 1, 5_000), (-1, -1, 999_999_000), (-2_500_000, -3, 500_000_000)] {
         let time = Time { sec, nanosec };
-        assert_eq!(
-            (Time::of_microseconds(microseconds), time.microseconds()),
-            (time, microseconds)
-        );
+        assert_eq!((Time::of_microseconds(microseconds), time.microseconds()), (time, microseconds));
         let nanosec = nanosec + 999;
-        assert_eq!(
-            Time { sec, nanosec }.after(0.400_000_6).microseconds(),
-            microseconds + 400_001
-        );
+        assert_eq!(Time { sec, nanosec }.after(0.400_000_6).microseconds(), microseconds + 400_001);
     }
 }

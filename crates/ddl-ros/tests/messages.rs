@@ -19,13 +19,9 @@ fn forecasts_paths_and_pictures_have_all_numbers_at_their_places() {
         from_value(reference("forecast")[name].take()).unwrap()
     }
     let ids = [4, 7].map(PedestrianId).into();
-    let qualities = part::<Vec<f64>>("ages").into_iter().map(|age| ObservationQuality {
-        age,
-        ..ObservationQuality::default()
-    });
-    let window = Window::new("hall", 0, 1, ids, part("past"))
-        .unwrap()
-        .with_qualities(qualities.collect());
+    let qualities =
+        part::<Vec<f64>>("ages").into_iter().map(|age| ObservationQuality { age, ..ObservationQuality::default() });
+    let window = Window::new("hall", 0, 1, ids, part("past")).unwrap().with_qualities(qualities.collect());
     let window = &window.with_names(PedestrianNames::new([(PedestrianId(4), "ann".into())].into()));
     let forecast = |goals| Forecast::new(2, 3, part("positions"), part("weights"), goals).unwrap();
     let spread = Spread {
@@ -39,12 +35,7 @@ fn forecasts_paths_and_pictures_have_all_numbers_at_their_places() {
     let (stamp, frame_id) = (Time::of_microseconds(-1_399_995), "odom".to_owned());
     let header = &Header { stamp, frame_id };
     for (joint, forecast, name) in [(true, &full, "full"), (false, &forecast(None), "bare")] {
-        let moment = Moment {
-            window,
-            forecast,
-            header,
-            joint,
-        };
+        let moment = Moment { window, forecast, header, joint };
         assert_eq!(to_value(moment.forecasts()).unwrap(), reference(name));
         assert_eq!(to_value(moment.likeliest_paths()).unwrap(), reference("paths"));
         assert_eq!(to_value(moment.markers()).unwrap(), reference("markers"));
@@ -58,10 +49,7 @@ fn forecasts_paths_and_pictures_have_all_numbers_at_their_places() {
 }
 
 fn observed<M: Message>(message: Value) -> Result<Observed, RosError> {
-    read_tracks(
-        M::TYPE,
-        &write(&from_value::<M>(message).expect("a message")).expect("bytes"),
-    )
+    read_tracks(M::TYPE, &write(&from_value::<M>(message).expect("a message")).expect("bytes"))
 }
 
 #[test]
@@ -82,10 +70,7 @@ fn pedestrians_have_name_class_and_place_and_others_are_counted() {
                 let number =
                     |(id, place): &(PedestrianId, _)| json!([id.0.min(1 << 53), names.of(*id).to_string(), place]);
                 let numbers: Vec<_> = numbered.iter().map(number).collect();
-                assert_eq!(
-                    json!([observed.header, rows, observed.left_out, numbers]),
-                    case["expected"]
-                );
+                assert_eq!(json!([observed.header, rows, observed.left_out, numbers]), case["expected"]);
                 let all = observed.left_out.values().sum::<usize>() + numbers.len();
                 observed.pedestrians[0].position.y = f64::NAN;
                 observed.keep_finite();
@@ -109,10 +94,7 @@ fn bytes_that_are_no_message_are_refused() {
     assert!(error(&bytes[..3]).contains("3 bytes has no head"));
     assert!(error(&[&[0, 3], &bytes[2..]].concat()).contains("the encoding 0x0003"));
     let swapped = [[0; 4], [0, 0, 0, 5], [0, 0, 0, 9], [0, 0, 0, 1], [0; 4], [0; 4]].concat();
-    assert_eq!(
-        read::<People>(&swapped).unwrap().header.stamp,
-        Time { sec: 5, nanosec: 9 }
-    );
+    assert_eq!(read::<People>(&swapped).unwrap().header.stamp, Time { sec: 5, nanosec: 9 });
     let unknown = read_tracks("nav_msgs/msg/Path", &bytes).unwrap_err().to_string();
     assert!(unknown.contains("no type of tracks; give vision_msgs"), "{unknown}");
 }

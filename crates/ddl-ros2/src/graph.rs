@@ -107,9 +107,7 @@ pub(crate) fn open(options: &Options) -> anyhow::Result<Node> {
 
 fn reliable(depth: usize) -> QosProfile {
     // A subscriber that hangs must not hold up the others.
-    QosProfile::publisher_default()
-        .reliability_reliable(WhenFull::Fail)
-        .history(History::KeepLast { depth })
+    QosProfile::publisher_default().reliability_reliable(WhenFull::Fail).history(History::KeepLast { depth })
 }
 
 fn topic<M: Message>(node: &Node, name: &str, qos: &QosProfile) -> anyhow::Result<Topic> {

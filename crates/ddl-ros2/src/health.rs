@@ -97,11 +97,7 @@ impl Health {
         };
         let mut sorted: Vec<f64> = self.latencies.iter().copied().collect();
         sorted.sort_by(f64::total_cmp);
-        let quantile = |share: f64| {
-            sorted
-                .get((share * sorted.len() as f64) as usize)
-                .map_or(f64::NAN, |value| *value)
-        };
+        let quantile = |share: f64| sorted.get((share * sorted.len() as f64) as usize).map_or(f64::NAN, |value| *value);
         let values = [
             ("frames", self.frames.to_string()),
             ("forecasts", self.forecasts.to_string()),
@@ -116,10 +112,7 @@ impl Health {
             ("latency p99 (ms)", format!("{:.2}", quantile(0.99))),
             ("last error", self.last_error.clone()),
         ];
-        let values = values.map(|(key, value)| KeyValue {
-            key: key.to_owned(),
-            value,
-        });
+        let values = values.map(|(key, value)| KeyValue { key: key.to_owned(), value });
         let status = DiagnosticStatus {
             level,
             name: format!("{node}: forecasts"),
@@ -129,10 +122,7 @@ impl Health {
         };
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         Some(DiagnosticArray {
-            header: Header {
-                stamp: Time::of_microseconds(now.as_micros() as i64),
-                ..Header::default()
-            },
+            header: Header { stamp: Time::of_microseconds(now.as_micros() as i64), ..Header::default() },
             status: vec![status],
         })
     }

@@ -61,9 +61,7 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
             let observed = message.and_then(|(message, info)| forecasting.observe(message, &info));
             observed.unwrap_or_else(|error| forecasting.health.dropped(&error));
         }
-        forecasting
-            .answer(&outputs)
-            .unwrap_or_else(|error| forecasting.health.dropped(&error));
+        forecasting.answer(&outputs).unwrap_or_else(|error| forecasting.health.dropped(&error));
         if let Some(report) = forecasting.health.report(&options.name) {
             publish(&outputs.diagnostics, report).unwrap_or_else(|error| forecasting.health.fault(&error));
         }
@@ -134,12 +132,7 @@ impl Forecasting<'_> {
 
     fn publish(&mut self, forecast: &WindowForecast, header: &Header, outputs: &Outputs) -> anyhow::Result<()> {
         let ((window, forecast), joint) = (forecast, self.options.joint);
-        let moment = Moment {
-            window,
-            forecast,
-            header,
-            joint,
-        };
+        let moment = Moment { window, forecast, header, joint };
         publish(&outputs.forecasts, moment.forecasts())?;
         if let Some(arrived) = self.arrived {
             let latency = SystemTime::now().to_nanos() - arrived.to_nanos();
@@ -175,21 +168,12 @@ impl Forecasting<'_> {
             let [width, height] = area.size();
             for (&time, output) in self.options.grids.iter().zip(&outputs.grids) {
                 let probabilities = vec![0.0; width * height];
-                let empty = Occupancy {
-                    area,
-                    time,
-                    probabilities,
-                };
+                let empty = Occupancy { area, time, probabilities };
                 publish(output, occupancy_grid(&empty, &header))?;
             }
         }
         let joint = self.options.joint;
-        let nobody = Forecasts {
-            header,
-            time_step: TIME_STEP,
-            joint,
-            pedestrians: Vec::new(),
-        };
+        let nobody = Forecasts { header, time_step: TIME_STEP, joint, pedestrians: Vec::new() };
         publish(&outputs.forecasts, nobody)
     }
 }

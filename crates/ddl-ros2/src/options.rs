@@ -105,14 +105,7 @@ impl Options {
 
     /// Names that are to be remapped, and are no topics of the node.
     pub(crate) fn strange_topics(&self) -> impl Iterator<Item = &str> {
-        let own = [
-            "/tf",
-            "/tf_static",
-            "/diagnostics",
-            "~/forecasts",
-            "~/paths",
-            "~/markers",
-        ];
+        let own = ["/tf", "/tf_static", "/diagnostics", "~/forecasts", "~/paths", "~/markers"];
         let known = own.into_iter().chain([self.topic.as_str()]).map(|name| self.full(name));
         let grids = self.full("~/occupancy/");
         let known: Vec<String> = known.collect();
@@ -122,18 +115,14 @@ impl Options {
 
     /// The area of the grids, if it is given.
     pub(crate) fn fixed_area(&self) -> anyhow::Result<Option<Area>> {
-        let area = self
-            .area
-            .map(|[x, y, to_x, to_y]| Area::new([x, y], [to_x, to_y], self.cell));
+        let area = self.area.map(|[x, y, to_x, to_y]| Area::new([x, y], [to_x, to_y], self.cell));
         Ok(area.transpose()?)
     }
 }
 
 fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-    let numbers = numbers
-        .ok()
-        .filter(|numbers| numbers.iter().all(|number: &f64| number.is_finite()));
+    let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|number: &f64| number.is_finite()));
     let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
     numbers.ok_or_else(|| format!("give {N} numbers with commas between them"))
 }
@@ -145,9 +134,7 @@ fn space(text: &str) -> Result<String, String> {
 
 /// `NAME:=VALUE`, as ROS writes it.
 pub(crate) fn pair(rule: &str) -> anyhow::Result<(String, String)> {
-    let pair = rule
-        .split_once(":=")
-        .map(|(name, value)| (name.to_owned(), value.to_owned()));
+    let pair = rule.split_once(":=").map(|(name, value)| (name.to_owned(), value.to_owned()));
     pair.with_context(|| format!("{rule}: give NAME:=VALUE"))
 }
 
@@ -164,11 +151,7 @@ fn transform(text: &str) -> Result<Isometry3<f64>, String> {
 fn ahead(text: &str) -> Result<f64, String> {
     let [number] = numbers(text)?;
     let last = HORIZON as f64 * TIME_STEP;
-    if (0.0..=last).contains(&number) {
-        Ok(number)
-    } else {
-        Err(format!("give seconds from 0 to {last:.1}"))
-    }
+    if (0.0..=last).contains(&number) { Ok(number) } else { Err(format!("give seconds from 0 to {last:.1}")) }
 }
 
 /// A time no longer than tracks are carried on.
@@ -176,18 +159,12 @@ fn short(text: &str) -> Result<f64, String> {
     let [number] = numbers(text)?;
     let longest = LiveTracks::LONGEST_GAP;
     let is_short = (0.0..=longest).contains(&number);
-    is_short
-        .then_some(number)
-        .ok_or_else(|| format!("give seconds from 0 to {longest}"))
+    is_short.then_some(number).ok_or_else(|| format!("give seconds from 0 to {longest}"))
 }
 
 fn positive(text: &str) -> Result<f64, String> {
     let [number] = numbers(text)?;
-    if number > 0.0 {
-        Ok(number)
-    } else {
-        Err("give a number above 0".to_owned())
-    }
+    if number > 0.0 { Ok(number) } else { Err("give a number above 0".to_owned()) }
 }
 
 #[cfg(test)]

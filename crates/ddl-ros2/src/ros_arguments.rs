@@ -53,11 +53,7 @@ pub(crate) fn parse(mut line: impl Iterator<Item = OsString>) -> anyhow::Result<
     // The files need the name of the node, which only the line gives.
     let named = Options::command().ignore_errors(true).try_get_matches_from(&words);
     let of = |id| named.as_ref().ok()?.get_one::<String>(id).map(String::as_str);
-    let node = format!(
-        "{}/{}",
-        of("namespace").unwrap_or_default(),
-        of("name").unwrap_or_default()
-    );
+    let node = format!("{}/{}", of("namespace").unwrap_or_default(), of("name").unwrap_or_default());
     let mut of_files = Parameters::new();
     for file in &files {
         of_files.extend(of_file(file, &node)?);
@@ -72,10 +68,7 @@ pub(crate) fn parse(mut line: impl Iterator<Item = OsString>) -> anyhow::Result<
 /// The option of a rule that gives a topic or the node another name.
 fn renamed(rule: &str) -> anyhow::Result<String> {
     let (from, to) = pair(rule)?;
-    ensure!(
-        !from.contains(':'),
-        "{rule}: leave out what is before the name; there is one node"
-    );
+    ensure!(!from.contains(':'), "{rule}: leave out what is before the name; there is one node");
     Ok(match from.as_str() {
         "__node" | "__name" => format!("--name={to}"),
         "__ns" => format!("--namespace={to}"),
@@ -142,8 +135,6 @@ fn option(name: &str, value: &Value) -> anyhow::Result<Option<OsString>> {
     if known.get_action().takes_values() {
         return Ok(Some(format!("--{option}={word}").into()));
     }
-    let is_set: bool = word
-        .parse()
-        .with_context(|| format!("parameter {name} is true or false, not {word}"))?;
+    let is_set: bool = word.parse().with_context(|| format!("parameter {name} is true or false, not {word}"))?;
     Ok(is_set.then(|| format!("--{option}").into()))
 }

@@ -34,12 +34,7 @@ struct Link {
 
 impl Transforms {
     pub(crate) fn new(fixed_frame: &str, given: Option<Isometry3<f64>>, holds: f64) -> Self {
-        Self {
-            fixed_frame: name(fixed_frame).to_owned(),
-            given,
-            holds: (1e6 * holds) as i64,
-            frames: BTreeMap::new(),
-        }
+        Self { fixed_frame: name(fixed_frame).to_owned(), given, holds: (1e6 * holds) as i64, frames: BTreeMap::new() }
     }
 
     /// Adds all transforms of a message but those that are none.
@@ -84,10 +79,7 @@ impl Transforms {
         if let Some(given) = self.given {
             return Ok((given, false));
         }
-        ensure!(
-            !from.is_empty(),
-            "the tracks name no frame: set header.frame_id, or give --transform"
-        );
+        ensure!(!from.is_empty(), "the tracks name no frame: set header.frame_id, or give --transform");
         let time = header.stamp.microseconds();
         let others = self.upwards(to, time);
         for (ancestor, up) in self.upwards(from, time) {
@@ -124,9 +116,7 @@ impl Transforms {
 impl Link {
     fn at(&self, time: i64, holds: i64) -> Result<Found, String> {
         let seconds = |microseconds: i64| microseconds as f64 / 1e6;
-        let after = self
-            .poses
-            .partition_point(|(stamp, _)| self.is_static || *stamp <= time);
+        let after = self.poses.partition_point(|(stamp, _)| self.is_static || *stamp <= time);
         let Some((stamp, pose)) = after.checked_sub(1).and_then(|last| self.poses.get(last)) else {
             return Err("begins after the tracks".to_owned());
         };
@@ -135,11 +125,7 @@ impl Link {
             if self.is_static || age <= holds {
                 return Ok((*pose, !self.is_static && age > 0));
             }
-            return Err(format!(
-                "is {} s old; --transform-age allows {} s",
-                seconds(age),
-                seconds(holds)
-            ));
+            return Err(format!("is {} s old; --transform-age allows {} s", seconds(age), seconds(holds)));
         };
         let share = (time - stamp) as f64 / (next - stamp) as f64;
         Ok((pose.try_lerp_slerp(next_pose, share, 1e-9).unwrap_or(*pose), false))
@@ -178,10 +164,7 @@ mod tests {
                     Ok((transform, is_held)) => {
                         let place = moved(&transform, place);
                         let [x, y] = [0, 1].map(|axis| expected[axis].as_f64().unwrap());
-                        assert!(
-                            (place.x - x).hypot(place.y - y) < 1e-9,
-                            "{header:?}: {place:?}, not {expected}"
-                        );
+                        assert!((place.x - x).hypot(place.y - y) < 1e-9, "{header:?}: {place:?}, not {expected}");
                         assert_eq!((is_held, place.z), (expected[2] == true, 0.0));
                     }
                     Err(error) => assert!(error.to_string().contains(expected.as_str().unwrap()), "{error}"),

@@ -89,18 +89,10 @@ impl Energy {
 
     /// By what odds are divided that strangers and companions come within a distance (m) of a plan that they see.
     pub(crate) fn avoidance(&self, within: f64) -> [f64; 2] {
-        let Avoidance {
-            within: at,
-            strangers,
-            companions,
-        } = &self.avoidance;
+        let Avoidance { within: at, strangers, companions } = &self.avoidance;
         let next = at.partition_point(|at| *at <= within).min(at.len() - 1);
         let [from, to] = [next.saturating_sub(1), next];
-        let share = if to > from {
-            (within - at[from]) / (at[to] - at[from])
-        } else {
-            0.0
-        };
+        let share = if to > from { (within - at[from]) / (at[to] - at[from]) } else { 0.0 };
         [strangers, companions].map(|logarithms| {
             let logarithm = logarithms[from] + share.clamp(0.0, 1.0) * (logarithms[to] - logarithms[from]);
             logarithm.exp()
@@ -121,10 +113,7 @@ impl Energy {
     pub(crate) fn strength(&self, a: &[Position], b: &[Position]) -> f32 {
         let [apart, velocities] = closeness(a, b);
         let bin = |limits: &[f64; 3], value: f64| limits.iter().position(|limit| value < *limit);
-        match (
-            bin(&self.together.distances, apart),
-            bin(&self.together.velocities, velocities),
-        ) {
+        match (bin(&self.together.distances, apart), bin(&self.together.velocities, velocities)) {
             (Some(distance), Some(velocity)) => self.together.strengths[distance][velocity],
             _ => 0.0,
         }
@@ -137,11 +126,7 @@ impl Energy {
         PairEnergy {
             near: (near as f32).max(0.1),
             radius: radius as f32,
-            conflict: if strength > 0.0 {
-                self.conflict.together
-            } else {
-                self.conflict.alone
-            },
+            conflict: if strength > 0.0 { self.conflict.together } else { self.conflict.alone },
             together: (strength > 0.0).then(|| (strength / partners.max(1.0).sqrt(), self.together.scale)),
         }
     }

@@ -11,32 +11,18 @@ pub enum SceneError {
         "hypothesis {future} has the weight {found} for pedestrian {pedestrian} and {expected} for pedestrian 0: joint \
          futures have one weight for the whole scene; make them with the joint forecast of a model"
     )]
-    NotJoint {
-        future: usize,
-        pedestrian: usize,
-        expected: f64,
-        found: f64,
-    },
+    NotJoint { future: usize, pedestrian: usize, expected: f64, found: f64 },
     #[error("a forecast without spread has no risk and no occupancy; make it with all hypotheses of a model")]
     NoSpread,
     #[error("a forecast of {found} hypotheses has no joint futures; at most {most} hypotheses: train with fewer goals")]
     Hypotheses { found: usize, most: usize },
     #[error("{name} is {value}; it must be {expected}")]
-    Number {
-        name: &'static str,
-        value: f64,
-        expected: &'static str,
-    },
+    Number { name: &'static str, value: f64, expected: &'static str },
     #[error(
         "an area of {width} x {height} m in cells of {cell} m has more than {most} cells: take larger cells, or a \
          smaller area"
     )]
-    Cells {
-        width: f64,
-        height: f64,
-        cell: f64,
-        most: usize,
-    },
+    Cells { width: f64, height: f64, cell: f64, most: usize },
 }
 
 /// A plan cannot be followed.
@@ -47,12 +33,7 @@ pub enum PlanError {
     #[error("a plan needs at least one row of time, x and y")]
     Empty,
     #[error("row {row} of the plan: {field} is {value}; it must be a finite number{more}")]
-    Number {
-        row: usize,
-        field: &'static str,
-        value: f64,
-        more: &'static str,
-    },
+    Number { row: usize, field: &'static str, value: f64, more: &'static str },
     #[error("row {row} of the plan: time {time} s does not come after {before} s; sort the rows by time")]
     Order { row: usize, time: f64, before: f64 },
     #[error(

@@ -45,47 +45,29 @@ pub(crate) fn scene(pedestrians: &[Pedestrian]) -> (Window, Forecast) {
     let count = pedestrians.len() as i64;
     let ids = (1..=count).map(|i| PedestrianId(i % count)).collect();
     let window = Window::new("yard", 0, 10, ids, pedestrians.iter().map(past).collect()).unwrap();
-    let hypotheses = pedestrians
-        .iter()
-        .flat_map(|(at, _, all)| all.iter().map(|&(weight, velocity)| (*at, weight, velocity)));
-    let paths = hypotheses
-        .clone()
-        .flat_map(|(at, _, velocity)| (1..=12).map(move |t| along(at, velocity, t)));
+    let hypotheses =
+        pedestrians.iter().flat_map(|(at, _, all)| all.iter().map(|&(weight, velocity)| (*at, weight, velocity)));
+    let paths = hypotheses.clone().flat_map(|(at, _, velocity)| (1..=12).map(move |t| along(at, velocity, t)));
     let weights = hypotheses.clone().map(|(_, weight, _)| weight).collect();
-    let forecast = Forecast::new(
-        pedestrians.len(),
-        pedestrians[0].2.len(),
-        paths.collect(),
-        weights,
-        None,
-    );
+    let forecast = Forecast::new(pedestrians.len(), pedestrians[0].2.len(), paths.collect(), weights, None);
     (window, forecast.unwrap())
 }
 
 pub(crate) fn hypotheses(pedestrians: &[Pedestrian]) -> Vec<Hypotheses> {
     let (window, forecast) = scene(pedestrians);
-    (0..pedestrians.len())
-        .map(|i| Hypotheses::of(&window, &forecast, i))
-        .collect()
+    (0..pedestrians.len()).map(|i| Hypotheses::of(&window, &forecast, i)).collect()
 }
 
 /// Pedestrians that stood and then go straight on: `[N][K]` velocities (m/s); the spread grows to `[N]` scales (m).
 pub(crate) fn futures(starts: &[Position], velocities: &[Vec<Position>], weights: &[f64], scales: &[f64]) -> Futures {
     let n = starts.len();
     let pedestrian = |(&start, velocities): (&Position, &Vec<Position>)| {
-        (
-            start,
-            [0.0; 2],
-            weights.iter().copied().zip(velocities.iter().copied()).collect(),
-        )
+        (start, [0.0; 2], weights.iter().copied().zip(velocities.iter().copied()).collect())
     };
     let (window, forecast) = scene(&starts.iter().zip(velocities).map(pedestrian).collect::<Vec<_>>());
     let steps = || (1..=HORIZON).map(|t| t as f64);
     let spread = Spread {
-        scales: scales
-            .iter()
-            .flat_map(|scale| steps().map(move |t| scale * t / HORIZON as f64))
-            .collect(),
+        scales: scales.iter().flat_map(|scale| steps().map(move |t| scale * t / HORIZON as f64)).collect(),
         paces: vec![Pace::Walking; n],
         regions: RegionTable::of(&[&[[1.0; HORIZON]; 9]; 3], &[0.5]).unwrap().into(),
     };
@@ -97,22 +79,13 @@ pub(crate) fn with_deviation(futures: &Futures, deviation: f64) -> Futures {
     let n = futures.pedestrians();
     let tracks = (0..n).map(|i| vec![futures.present(i); OBSERVED]).collect();
     let ids = (0..n).map(|i| PedestrianId(i as i64)).collect();
-    let quality = ObservationQuality {
-        deviation,
-        ..ObservationQuality::default()
-    };
-    let window = Window::new("yard", 0, 10, ids, tracks)
-        .unwrap()
-        .with_qualities(vec![quality; n]);
+    let quality = ObservationQuality { deviation, ..ObservationQuality::default() };
+    let window = Window::new("yard", 0, 10, ids, tracks).unwrap().with_qualities(vec![quality; n]);
     Futures::new(&window, futures.forecast().clone()).unwrap()
 }
 
 /// A plan of rows of time (s), x, y and radius (m).
 pub(crate) fn plan(rows: &[[f64; 4]]) -> Plan {
-    let point = |&[time, x, y, radius]: &[f64; 4]| PlanPoint {
-        time,
-        position: [x, y],
-        radius,
-    };
+    let point = |&[time, x, y, radius]: &[f64; 4]| PlanPoint { time, position: [x, y], radius };
     Plan::new(rows.iter().map(point).collect()).unwrap()
 }

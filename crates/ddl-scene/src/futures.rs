@@ -26,32 +26,19 @@ impl Futures {
     /// The forecast has another number of pedestrians; the weight of a hypothesis differs between pedestrians.
     pub fn new(window: &Window, forecast: Forecast) -> Result<Self, SceneError> {
         if window.len() != forecast.pedestrians() {
-            return Err(SceneError::Pedestrians {
-                window: window.len(),
-                forecast: forecast.pedestrians(),
-            });
+            return Err(SceneError::Pedestrians { window: window.len(), forecast: forecast.pedestrians() });
         }
         for pedestrian in 1..forecast.pedestrians() {
             for future in 0..forecast.hypotheses() {
                 let [expected, found] = [0, pedestrian].map(|i| forecast.weight(i, future));
                 if (expected - found).abs() > EQUAL_WEIGHTS {
-                    return Err(SceneError::NotJoint {
-                        future,
-                        pedestrian,
-                        expected,
-                        found,
-                    });
+                    return Err(SceneError::NotJoint { future, pedestrian, expected, found });
                 }
             }
         }
         let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
         let deviations = (0..window.len()).map(|i| window.quality(i).deviation).collect();
-        Ok(Self {
-            present,
-            deviations,
-            groups: groups(window),
-            forecast,
-        })
+        Ok(Self { present, deviations, groups: groups(window), forecast })
     }
 
     /// [Groups](crate::groups) of pedestrians who walk together, as indices.

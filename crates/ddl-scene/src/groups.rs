@@ -15,10 +15,7 @@ const MOST_NEIGHBOURS: usize = 16;
 pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
     let apart = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).sum::<f64>() / a.len() as f64;
     let moved = |track: &[Position]| [0, 1].map(|axis| track[OBSERVED - 1][axis] - track[0][axis]);
-    [
-        apart,
-        distance(moved(a), moved(b)) / (TIME_STEP * (OBSERVED - 1) as f64),
-    ]
+    [apart, distance(moved(a), moved(b)) / (TIME_STEP * (OBSERVED - 1) as f64)]
 }
 
 /// Groups of at least two pedestrians of a window who walk together, as indices in ascending order: linked by pairs

@@ -33,10 +33,7 @@ impl Hypotheses {
 
     /// One certain path, as of a plan: 12 positions, and the radius of who follows it (m).
     pub(crate) fn certain(present: Position, path: &[Position; HORIZON], radius: f64) -> Self {
-        Self {
-            radius,
-            ..Self::new(present, vec![1.0], |_| path)
-        }
+        Self { radius, ..Self::new(present, vec![1.0], |_| path) }
     }
 
     pub(crate) fn new<'a>(present: Position, weights: Vec<f32>, path: impl Fn(usize) -> &'a [Position]) -> Self {
@@ -55,13 +52,7 @@ impl Hypotheses {
                 }
             }
         }
-        Self {
-            present,
-            weights,
-            paths,
-            reach,
-            radius: 0.0,
-        }
+        Self { present, weights, paths, reach, radius: 0.0 }
     }
 
     /// Number of hypotheses, K.

@@ -18,10 +18,7 @@ const MARGIN: f32 = 1.05;
 
 /// Changes the shares of the hypotheses of each pedestrian, `[N][H]`, where paths of a pair collide.
 pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&mut [f32]]) {
-    let means = people
-        .iter()
-        .zip(shares.iter())
-        .map(|(one, shares)| one.mean(&shares[..one.count()]));
+    let means = people.iter().zip(shares.iter()).map(|(one, shares)| one.mean(&shares[..one.count()]));
     let means: Vec<Path> = means.collect();
     let mut paths = means.clone();
     let collide = |pair: &Pair, first: &Path, second: &Path| collide(people, pair, first, second);
@@ -40,11 +37,7 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
             let collisions = |i: usize, path: &Path, most: usize| {
                 let with = |&&(index, other): &&(usize, usize)| {
                     let pair = &pairs[index];
-                    let [first, second] = if pair.first == i {
-                        [path, &paths[other]]
-                    } else {
-                        [&paths[other], path]
-                    };
+                    let [first, second] = if pair.first == i { [path, &paths[other]] } else { [&paths[other], path] };
                     !touch[index] && collide(pair, first, second)
                 };
                 partners[i].iter().filter(with).take(most).count()
@@ -86,9 +79,7 @@ fn collide(people: &[Hypotheses], pair: &Pair, first: &Path, second: &Path) -> b
 
 /// Sum of the distances of two paths at all steps, metres.
 fn far(a: &Path, b: &Path) -> f32 {
-    (0..=HORIZON)
-        .map(|t| (a[0][t] - b[0][t]).hypot(a[1][t] - b[1][t]))
-        .sum()
+    (0..=HORIZON).map(|t| (a[0][t] - b[0][t]).hypot(a[1][t] - b[1][t])).sum()
 }
 
 #[cfg(test)]

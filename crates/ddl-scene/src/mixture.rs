@@ -107,9 +107,9 @@ fn name(window: &Window, i: usize) -> PedestrianName {
 fn seed(name: &PedestrianName) -> u64 {
     match name {
         PedestrianName::Number(number) => number.cast_unsigned(),
-        PedestrianName::Word(word) => word.bytes().fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
-        }),
+        PedestrianName::Word(word) => word
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)),
     }
 }
 
@@ -143,12 +143,7 @@ impl Scene {
             }
         }
         let pairs = pairs_of(Energy::learned(), &people, &tracks);
-        Self {
-            people,
-            seeds,
-            pairs,
-            order,
-        }
+        Self { people, seeds, pairs, order }
     }
 
     /// The futures, with the pedestrians in the order of the scene.
@@ -168,15 +163,10 @@ impl Scene {
             }
         }
         for k in (0..hypotheses).filter(|&k| sizes[k] > 0) {
-            let future = shares
-                .chunks_exact_mut(row)
-                .map(|of_each| &mut of_each[k * hypotheses..][..hypotheses]);
+            let future = shares.chunks_exact_mut(row).map(|of_each| &mut of_each[k * hypotheses..][..hypotheses]);
             keep_apart(&self.people, &self.pairs, &mut future.collect::<Vec<_>>());
         }
-        JointMixture {
-            weights: sizes.iter().map(|size| f64::from(*size) / SAMPLES as f64).collect(),
-            shares,
-        }
+        JointMixture { weights: sizes.iter().map(|size| f64::from(*size) / SAMPLES as f64).collect(), shares }
     }
 
     /// The pedestrians of the mixture in the order of the window, without who follows the plan.

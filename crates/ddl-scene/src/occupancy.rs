@@ -51,19 +51,9 @@ impl Area {
         let [columns, rows] = [width, height].map(|size| (size / cell - ROUNDING).ceil().max(1.0));
         if columns * rows > Self::MOST_CELLS as f64 {
             let most = Self::MOST_CELLS;
-            return Err(SceneError::Cells {
-                width,
-                height,
-                cell,
-                most,
-            });
+            return Err(SceneError::Cells { width, height, cell, most });
         }
-        Ok(Self {
-            origin: low,
-            cell,
-            width: columns as usize,
-            height: rows as usize,
-        })
+        Ok(Self { origin: low, cell, width: columns as usize, height: rows as usize })
     }
 
     /// Checks that the grids of so many times fit into memory together.
@@ -118,12 +108,7 @@ impl Occupancy {
     /// # Errors
     /// The step is not a number of at least 0.01 s.
     pub fn every(step: f64) -> Result<Vec<f64>, SceneError> {
-        check(
-            "the time between grids",
-            step,
-            step >= 0.01,
-            "a number of at least 0.01 s",
-        )?;
+        check("the time between grids", step, step >= 0.01, "a number of at least 0.01 s")?;
         let last = (LAST / step + ROUNDING) as usize;
         // Without the rounding error of the product: 0.3, not 0.30000000000000004.
         let time = |index| (index as f64 * step * 1e9).round() / 1e9;
@@ -144,11 +129,7 @@ impl Futures {
         let [low, high] = bounds(places).unwrap_or_default();
         let low = low.map(|coordinate| coordinate - margin);
         // Somebody who stands still, without a margin.
-        Area::new(
-            low,
-            [0, 1].map(|axis| (high[axis] + margin).max(low[axis] + cell)),
-            cell,
-        )
+        Area::new(low, [0, 1].map(|axis| (high[axis] + margin).max(low[axis] + cell)), cell)
     }
 
     /// One grid for each time (s after the moment), computed when the iterator arrives at it, in parallel. A body is a
@@ -167,12 +148,7 @@ impl Futures {
         check("the radius of a body", body, body > 0.0, "a number of metres above 0")?;
         for &time in times {
             let is_inside = (0.0..=LAST + ROUNDING).contains(&time);
-            check(
-                "a time of the grids",
-                time,
-                is_inside,
-                "from 0 to 4.8 s after the moment",
-            )?;
+            check("a time of the grids", time, is_inside, "from 0 to 4.8 s after the moment")?;
         }
         if self.scale(0, 0.0).is_none() {
             return Err(SceneError::NoSpread);
@@ -184,23 +160,15 @@ impl Futures {
         let pedestrians: Vec<usize> = (0..self.pedestrians()).collect();
         let table = |&i: &usize| MassTable::new(body, self.scale(i, time).unwrap_or(0.0));
         let tables: Vec<MassTable> = pedestrians.par_iter().map(table).collect();
-        let places: Vec<Vec<Position>> = (0..self.count())
-            .map(|k| pedestrians.iter().map(|&i| self.position(i, k, time)).collect())
-            .collect();
+        let places: Vec<Vec<Position>> =
+            (0..self.count()).map(|k| pedestrians.iter().map(|&i| self.position(i, k, time)).collect()).collect();
         let mut probabilities = vec![0.0; area.width * area.height];
         let rows = probabilities.par_chunks_mut(area.width).enumerate();
         rows.for_each_init(
             || vec![1.0; area.width],
             |free, (row, probabilities)| {
                 for (k, places) in places.iter().enumerate() {
-                    add_future(
-                        area,
-                        row,
-                        places.iter().zip(&tables),
-                        self.weight(k),
-                        free,
-                        probabilities,
-                    );
+                    add_future(area, row, places.iter().zip(&tables), self.weight(k), free, probabilities);
                 }
             },
         );
@@ -208,11 +176,7 @@ impl Futures {
         for probability in &mut probabilities {
             *probability = probability.min(1.0);
         }
-        Occupancy {
-            area: *area,
-            time,
-            probabilities,
-        }
+        Occupancy { area: *area, time, probabilities }
     }
 }
 
@@ -234,20 +198,14 @@ fn add_future<'a>(
             continue;
         }
         let column = |x: f64| ((x - area.origin[0]) / area.cell).clamp(0.0, area.width as f64) as usize;
-        let [from, to] = [
-            column(place[0] - half.sqrt()),
-            column(place[0] + half.sqrt() + area.cell),
-        ];
+        let [from, to] = [column(place[0] - half.sqrt()), column(place[0] + half.sqrt() + area.cell)];
         for (offset, free) in free[from..to].iter_mut().enumerate() {
             let dx = area.centre([from + offset, row])[0] - place[0];
             *free *= 1.0 - table.mass((dx * dx + dy * dy).sqrt()) as f32;
         }
         [first, end] = [first.min(from), end.max(to)];
     }
-    for (free, probability) in free[first.min(end)..end]
-        .iter_mut()
-        .zip(&mut probabilities[first.min(end)..end])
-    {
+    for (free, probability) in free[first.min(end)..end].iter_mut().zip(&mut probabilities[first.min(end)..end]) {
         *probability += weight as f32 * (1.0 - *free);
         *free = 1.0;
     }

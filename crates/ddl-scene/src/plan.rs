@@ -37,14 +37,7 @@ impl Plan {
             let [x, y] = point.position;
             let numbers = [("time", point.time), ("x", x), ("y", y), ("radius", point.radius)];
             let wrong = |number: Option<&(&'static str, f64)>, more| {
-                number.map_or(Ok(()), |&(field, value)| {
-                    Err(PlanError::Number {
-                        row,
-                        field,
-                        value,
-                        more,
-                    })
-                })
+                number.map_or(Ok(()), |&(field, value)| Err(PlanError::Number { row, field, value, more }))
             };
             wrong(numbers.iter().find(|(_, number)| !number.is_finite()), "")?;
             let mut places = numbers[1..].iter();
@@ -74,11 +67,8 @@ impl Plan {
         let next = self.points.partition_point(|point| point.time <= time);
         let from = self.points[next.saturating_sub(1)];
         let to = self.points[next.min(self.points.len() - 1)];
-        let share = if to.time > from.time {
-            ((time - from.time) / (to.time - from.time)).clamp(0.0, 1.0)
-        } else {
-            0.0
-        };
+        let share =
+            if to.time > from.time { ((time - from.time) / (to.time - from.time)).clamp(0.0, 1.0) } else { 0.0 };
         PlanPoint {
             time,
             position: between(from.position, to.position, share),

@@ -36,13 +36,7 @@ type Centre = Vec<[[f32; STEPS.len()]; 2]>;
 /// where there are fewer different samples.
 fn first_centres(people: &[Hypotheses], chosen: &[Vec<u8>], count: usize, clusters: usize) -> Vec<Centre> {
     let mut random = ChaCha8Rng::seed_from_u64(0);
-    let sample = |s: usize| {
-        people
-            .iter()
-            .zip(chosen)
-            .map(|(one, chosen)| place(one, usize::from(chosen[s])))
-            .collect()
-    };
+    let sample = |s: usize| people.iter().zip(chosen).map(|(one, chosen)| place(one, usize::from(chosen[s]))).collect();
     let mut centres: Vec<Centre> = vec![sample(0)];
     let mut nearest = vec![f32::INFINITY; count];
     while centres.len() < clusters {
@@ -79,9 +73,7 @@ fn distances(people: &[Hypotheses], chosen: &[Vec<u8>], centres: &[Centre]) -> V
             let [x, y] = place(one, hypothesis);
             table.extend(centres.iter().map(|centre| {
                 let [cx, cy] = &centre[i];
-                (0..STEPS.len())
-                    .map(|t| (x[t] - cx[t]) * (x[t] - cx[t]) + (y[t] - cy[t]) * (y[t] - cy[t]))
-                    .sum::<f32>()
+                (0..STEPS.len()).map(|t| (x[t] - cx[t]) * (x[t] - cx[t]) + (y[t] - cy[t]) * (y[t] - cy[t])).sum::<f32>()
             }));
         }
         for (sums, &hypothesis) in distances.chunks_exact_mut(centres.len()).zip(chosen) {
@@ -106,11 +98,8 @@ fn means(people: &[Hypotheses], chosen: &[Vec<u8>], labels: &[usize], before: &[
         for (&label, &hypothesis) in labels.iter().zip(chosen) {
             shares[label * one.count() + usize::from(hypothesis)] += 1.0 / sizes[label];
         }
-        for ((centre, shares), _) in centres
-            .iter_mut()
-            .zip(shares.chunks_exact(one.count()))
-            .zip(&sizes)
-            .filter(|(_, size)| **size > 0.0)
+        for ((centre, shares), _) in
+            centres.iter_mut().zip(shares.chunks_exact(one.count())).zip(&sizes).filter(|(_, size)| **size > 0.0)
         {
             let mean = |axis: usize, t: usize| one.at(axis, t).iter().zip(shares).map(|(x, share)| x * share).sum();
             centre[i] = [0, 1].map(|axis| STEPS.map(|t| mean(axis, t)));

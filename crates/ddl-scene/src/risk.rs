@@ -147,20 +147,12 @@ impl Futures {
             *probability = probability.min(1.0);
         }
         let total = until[HORIZON - 1];
-        Risk {
-            total,
-            pedestrians,
-            steps,
-            until,
-        }
+        Risk { total, pedestrians, steps, until }
     }
 
     fn clearance(&self, crowd: &Crowd, plan: &Plan) -> Clearance {
         let legs = legs(plan);
-        let mut clearance = Clearance {
-            nearest: 0.0,
-            pedestrians: vec![0.0; self.pedestrians()],
-        };
+        let mut clearance = Clearance { nearest: 0.0, pedestrians: vec![0.0; self.pedestrians()] };
         for k in 0..self.count() {
             let weight = self.weight(k);
             let mut distances = Vec::with_capacity(self.pedestrians() * DEVIATIONS);

@@ -29,30 +29,20 @@ fn straight(person: Person) -> usize {
 /// People who walked straight on, and a hypothesis for each turn; ids in the order of `ids`.
 fn scene(people: &[Person], ids: &[i64]) -> (Window, Forecast) {
     let along = |[x, y]: Position, heading: f64, length: f64| [x + length * heading.cos(), y + length * heading.sin()];
-    let past = |&(at, heading, speed): &Person| {
-        (0..8)
-            .map(|t| along(at, heading, 0.4 * speed * f64::from(t - 7)))
-            .collect()
-    };
+    let past =
+        |&(at, heading, speed): &Person| (0..8).map(|t| along(at, heading, 0.4 * speed * f64::from(t - 7))).collect();
     let ids = ids.iter().map(|&id| PedestrianId(id)).collect();
     let window = Window::new("yard", 0, 1, ids, people.iter().map(past).collect()).unwrap();
     let path = |(at, heading, speed): Person, turn: f64| {
         (1..=12).map(move |t| along(at, heading + turn, 0.4 * speed * f64::from(t)))
     };
-    let paths = people
-        .iter()
-        .flat_map(|&one| hypotheses(one).into_iter().flat_map(move |(turn, _)| path(one, turn)));
-    let goals = people
-        .iter()
-        .flat_map(|&one| hypotheses(one).map(|(turn, _)| path(one, turn).next_back().unwrap()));
+    let paths = people.iter().flat_map(|&one| hypotheses(one).into_iter().flat_map(move |(turn, _)| path(one, turn)));
+    let goals = people.iter().flat_map(|&one| hypotheses(one).map(|(turn, _)| path(one, turn).next_back().unwrap()));
     let forecast = Forecast::new(
         people.len(),
         K,
         paths.collect(),
-        people
-            .iter()
-            .flat_map(|&one| hypotheses(one).map(|(_, weight)| weight))
-            .collect(),
+        people.iter().flat_map(|&one| hypotheses(one).map(|(_, weight)| weight)).collect(),
         Some(goals.collect()),
     );
     (window, forecast.unwrap())
@@ -67,9 +57,7 @@ fn mixture(people: &[Person]) -> (Forecast, JointMixture) {
 
 /// The path of pedestrian `i` in future `k`.
 fn path(forecast: &Forecast, mixture: &JointMixture, i: usize, k: usize) -> Vec<Position> {
-    (0..HORIZON)
-        .map(|t| mixture.mean(i * K + k, |i, h| forecast.hypothesis(i, h)[t]))
-        .collect()
+    (0..HORIZON).map(|t| mixture.mean(i * K + k, |i, h| forecast.hypothesis(i, h)[t])).collect()
 }
 
 /// Probability of each hypothesis of pedestrian `i` over all futures.
@@ -82,9 +70,7 @@ fn marginal(mixture: &JointMixture, i: usize) -> Vec<f64> {
 fn least(a: &[Position], b: &[Position]) -> f64 {
     let places = |path: &[Position]| -> Vec<Position> {
         let pairs = path.windows(2);
-        pairs
-            .flat_map(|pair| (0..=5).map(|part| between(pair[0], pair[1], f64::from(part) / 5.0)))
-            .collect()
+        pairs.flat_map(|pair| (0..=5).map(|part| between(pair[0], pair[1], f64::from(part) / 5.0))).collect()
     };
     let pairs = places(a).into_iter().zip(places(b));
     pairs.map(|(p, q)| distance(p, q)).fold(f64::INFINITY, f64::min)
@@ -239,14 +225,7 @@ fn groups_by_hand() {
     );
     // 0.34 and 0.36 m/s apart: 0.136 and 0.144 m in 0.4 s.
     for (faster, expected) in [(0.136, 1), (0.144, 0)] {
-        assert_eq!(
-            of(&[
-                ([0.0; 2], on),
-                ([0.5, 0.5], [on[0] + 0.6 * faster, on[1] - 0.8 * faster])
-            ])
-            .len(),
-            expected
-        );
+        assert_eq!(of(&[([0.0; 2], on), ([0.5, 0.5], [on[0] + 0.6 * faster, on[1] - 0.8 * faster])]).len(), expected);
     }
     // 2.6 m apart at first, 1.7 m at last, and the other way round: 2.15 m on average. 0.1 m more is too far.
     for (x, step) in [(2.6, -0.128), (1.704, 0.128)] {

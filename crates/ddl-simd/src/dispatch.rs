@@ -86,9 +86,7 @@ impl Dispatch {
                 || kernel.run(simd),
             ),
             level => {
-                let Some(simd) = level.as_sse2() else {
-                    unreachable!("every x86-64 processor has SSE2")
-                };
+                let Some(simd) = level.as_sse2() else { unreachable!("every x86-64 processor has SSE2") };
                 simd.vectorize(
                     #[inline(always)]
                     || kernel.run(simd),

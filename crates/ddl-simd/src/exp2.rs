@@ -10,14 +10,7 @@ const ROUNDING: f32 = 12_582_912.0;
 /// 2^f on [−1/2, 1/2]: the polynomial with P(0) = 1 and the smallest maximum relative error (iteratively reweighted
 /// least squares; 1.1e-7 with coefficients of f32).
 #[expect(clippy::approx_constant, reason = "a fitted coefficient, not ln 2")]
-const POLYNOMIAL: [f32; 6] = [
-    1.0,
-    0.693_147,
-    0.240_222_42,
-    0.055_507_336,
-    0.009_671_513,
-    0.001_326_472_7,
-];
+const POLYNOMIAL: [f32; 6] = [1.0, 0.693_147, 0.240_222_42, 0.055_507_336, 0.009_671_513, 0.001_326_472_7];
 
 /// 2^exponent of several vectors, for exponents from −126 to 127. The vectors are processed stage by stage, so that the
 /// processor can overlap them.

@@ -10,9 +10,7 @@ type Narrow = [f32; LANES];
 const HALF: usize = LANES / 2;
 
 fn each_set() -> impl Iterator<Item = Dispatch> {
-    InstructionSet::available()
-        .into_iter()
-        .map(|set| Dispatch::new(set).unwrap())
+    InstructionSet::available().into_iter().map(|set| Dispatch::new(set).unwrap())
 }
 
 struct OnGroups<'a> {
@@ -126,9 +124,7 @@ fn tiled_kernels_run_once_with_a_tile_that_the_registers_hold() {
     for dispatch in each_set() {
         let mut tiles = Vec::new();
         dispatch.run(OnTiles(&mut tiles));
-        let [(rows, vectors)] = tiles[..] else {
-            panic!("{dispatch:?}: {tiles:?}")
-        };
+        let [(rows, vectors)] = tiles[..] else { panic!("{dispatch:?}: {tiles:?}") };
         assert!(8 % rows == 0 && (1..=2).contains(&vectors), "{dispatch:?}");
         let (each, available) = match dispatch.instruction_set() {
             InstructionSet::Avx512 => (1, 32),

@@ -27,10 +27,7 @@ impl<const D: usize> Narrowing<D> {
                 *sum += value / count;
             }
         }
-        Self {
-            scale: (std::f64::consts::LOG2_E / gamma).sqrt(),
-            shift,
-        }
+        Self { scale: (std::f64::consts::LOG2_E / gamma).sqrt(), shift }
     }
 
     pub(crate) fn narrow(&self, steps: &[[f64; D]]) -> Vec<[f32; D]> {
@@ -40,9 +37,7 @@ impl<const D: usize> Narrowing<D> {
     /// Largest absolute value that `steps` have after scaling and shifting.
     pub(crate) fn largest<'a>(&self, steps: impl Iterator<Item = &'a [f64; D]>) -> f64 {
         let components = steps.flat_map(|step| step.iter().zip(&self.shift));
-        components
-            .map(|(v, s)| ((v - s) * self.scale).abs())
-            .fold(0.0, f64::max)
+        components.map(|(v, s)| ((v - s) * self.scale).abs()).fold(0.0, f64::max)
     }
 
     pub(crate) fn step(&self, step: &[f64; D]) -> [f32; D] {

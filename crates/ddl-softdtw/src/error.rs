@@ -13,12 +13,7 @@ pub enum SoftDtwError {
     #[error("sequence {sequence} is empty: soft-DTW needs at least one step")]
     EmptySequence { sequence: char },
     #[error("sequence {sequence}, step {step}, component {component} is {value}: must be finite")]
-    NonFinite {
-        sequence: char,
-        step: usize,
-        component: usize,
-        value: f64,
-    },
+    NonFinite { sequence: char, step: usize, component: usize, value: f64 },
     #[error("the soft-DTW value or gradient leaves the range of f64: scale the sequences (or gamma) down")]
     Overflow,
 }

@@ -10,11 +10,7 @@ use fearless_simd::prelude::*;
 const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
 /// 2^f on [−1/2, 1/2], degree 11 (Remez exchange, 3.1e-18).
-#[expect(
-    clippy::excessive_precision,
-    clippy::approx_constant,
-    reason = "digits as printed by the Remez exchange"
-)]
+#[expect(clippy::excessive_precision, clippy::approx_constant, reason = "digits as printed by the Remez exchange")]
 const POLYNOMIAL: [f64; 12] = [
     1.0,
     0.693_147_180_559_945_330_461,
@@ -47,10 +43,7 @@ pub(crate) fn exp2_parts<S: Simd>(simd: S, exponent: f64x8<S>) -> [f64x8<S>; 2] 
         |coefficient| f64x8::splat(simd, coefficient),
     );
     for [even, odd] in lower.as_chunks().0.iter().rev() {
-        sums = [
-            sums[0].mul_add_precise(squared, *even),
-            sums[1].mul_add_precise(squared, *odd),
-        ];
+        sums = [sums[0].mul_add_precise(squared, *even), sums[1].mul_add_precise(squared, *odd)];
     }
     let [even, odd] = sums;
     [odd.mul_add_precise(fraction, even), integer]
@@ -87,9 +80,7 @@ mod tests {
     fn on_each_set(exponents: [f64; 8]) -> Vec<[[f64; 8]; 3]> {
         let parts = |set| {
             let mut parts = [[0.0; 8]; 3];
-            Dispatch::new(set)
-                .expect("available")
-                .run(Parts(&exponents, &mut parts));
+            Dispatch::new(set).expect("available").run(Parts(&exponents, &mut parts));
             parts
         };
         InstructionSet::available().into_iter().map(parts).collect()
@@ -105,10 +96,7 @@ mod tests {
             let results = on_each_set(exponents);
             for parts in &results {
                 let [factors, integers, products] = parts;
-                assert_eq!(
-                    parts.map(|lanes| lanes.map(f64::to_bits)),
-                    results[0].map(|lanes| lanes.map(f64::to_bits))
-                );
+                assert_eq!(parts.map(|lanes| lanes.map(f64::to_bits)), results[0].map(|lanes| lanes.map(f64::to_bits)));
                 for l in 0..8 {
                     let fraction = exponents[l] - integers[l];
                     assert!(integers[l].fract() == 0.0 && fraction.abs() <= 0.5);

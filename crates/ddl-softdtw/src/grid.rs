@@ -68,11 +68,8 @@ impl<const D: usize> Grid<'_, D> {
         let mut halves = [f64x8::splat(simd, 0.0); 2];
         for k in 0..D {
             let difference = differences[k];
-            halves[k % 2] = if k < 2 {
-                difference * difference
-            } else {
-                difference.mul_add_precise(difference, halves[k % 2])
-            };
+            halves[k % 2] =
+                if k < 2 { difference * difference } else { difference.mul_add_precise(difference, halves[k % 2]) };
         }
         if D > 1 { halves[0] + halves[1] } else { halves[0] }
     }

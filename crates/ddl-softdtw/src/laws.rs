@@ -100,12 +100,6 @@ proptest! {
 fn hard_dtw_has_the_gradient_of_its_cheapest_path() {
     let (x, y) = ([[0.0], [0.0], [1.0]], [[0.0], [1.0], [3.0]]);
     let hard = dtw(0.0);
-    assert_eq!(
-        hard.value_and_gradient(&x, &y).unwrap(),
-        (4.0, vec![[0.0], [0.0], [-4.0]])
-    );
-    assert_eq!(
-        hard.value_and_gradient(&y, &x).unwrap(),
-        (4.0, vec![[0.0], [0.0], [4.0]])
-    );
+    assert_eq!(hard.value_and_gradient(&x, &y).unwrap(), (4.0, vec![[0.0], [0.0], [-4.0]]));
+    assert_eq!(hard.value_and_gradient(&y, &x).unwrap(), (4.0, vec![[0.0], [0.0], [4.0]]));
 }

@@ -10,11 +10,7 @@ type Ways = [f64; 3];
 impl<const D: usize> Grid<'_, D> {
     /// The value; infinite when it exceeds the range of `f64`.
     pub(crate) fn log_domain_value(&self) -> f64 {
-        if self.gamma > 0.0 {
-            self.last_cell(|a, b, c| softmin(a, b, c, self.gamma))
-        } else {
-            self.last_cell(minimum)
-        }
+        if self.gamma > 0.0 { self.last_cell(|a, b, c| softmin(a, b, c, self.gamma)) } else { self.last_cell(minimum) }
     }
 
     /// The value and its gradient with respect to the rows; the gradient holds NaN or infinity if it exceeds the range

@@ -52,13 +52,7 @@ impl<const D: usize> SearchIndex<D> {
             steps.extend_from_slice(candidate);
             offsets.push(steps.len());
         }
-        let mut index = Self {
-            dtw: *dtw,
-            steps,
-            offsets,
-            self_values: Vec::new(),
-            sieve: None,
-        };
+        let mut index = Self { dtw: *dtw, steps, offsets, self_values: Vec::new(), sieve: None };
         index.self_values = index.evaluate_self_values()?;
         if dtw.gamma > 0.0 {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
@@ -139,9 +133,7 @@ impl<const D: usize> SearchIndex<D> {
         let value = |index| finite(self.dtw.self_value(self.candidate(index)));
         let values: Vec<_> = (0..self.len()).into_par_iter().map(value).collect();
         let values = values.into_iter().enumerate();
-        values
-            .map(|(index, value)| value.map_err(|source| SearchError::Candidate { index, source }))
-            .collect()
+        values.map(|(index, value)| value.map_err(|source| SearchError::Candidate { index, source })).collect()
     }
 
     fn candidate(&self, index: usize) -> &[[f64; D]] {

@@ -23,13 +23,7 @@ impl Selection {
     /// Selects the `wanted` (at least 1) largest scores and those down to 2^−`margin_log2` times the last of them.
     pub(crate) fn new(wanted: usize, margin_log2: f64) -> Self {
         let capacity = 4 * wanted.max(64);
-        Self {
-            wanted,
-            slack: (-margin_log2).exp2(),
-            threshold: 0.0,
-            capacity,
-            kept: Vec::with_capacity(capacity),
-        }
+        Self { wanted, slack: (-margin_log2).exp2(), threshold: 0.0, capacity, kept: Vec::with_capacity(capacity) }
     }
 
     pub(crate) fn offer(&mut self, score: f32, candidate: usize) {
@@ -50,9 +44,7 @@ impl Selection {
         if self.kept.len() <= last {
             return None;
         }
-        let (_, nth, _) = self
-            .kept
-            .select_nth_unstable_by(last, |a, b| b.score.total_cmp(&a.score));
+        let (_, nth, _) = self.kept.select_nth_unstable_by(last, |a, b| b.score.total_cmp(&a.score));
         Some(nth.score)
     }
 

@@ -39,17 +39,10 @@ impl<const D: usize> CandidateSieve<D> {
         };
         let weights = blocks.members.iter().map(|members| {
             let mut lanes = Lanes::ZERO;
-            lanes
-                .0
-                .iter_mut()
-                .zip(members)
-                .for_each(|(lane, member)| *lane = weight(member));
+            lanes.0.iter_mut().zip(members).for_each(|(lane, member)| *lane = weight(member));
             lanes
         });
-        Some(Self {
-            weights: weights.collect(),
-            blocks,
-        })
+        Some(Self { weights: weights.collect(), blocks })
     }
 
     /// The candidates that may be among the `wanted` nearest of a query, or `None` if `f32` is not accurate enough.

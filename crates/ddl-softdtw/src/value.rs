@@ -48,11 +48,7 @@ impl SoftDtw {
     /// # Errors
     /// [`SoftDtwError::InvalidGamma`] when `gamma` is negative, infinite or NaN.
     pub fn new(gamma: f64) -> Result<Self, SoftDtwError> {
-        if gamma.is_finite() && gamma >= 0.0 {
-            Ok(Self { gamma })
-        } else {
-            Err(SoftDtwError::InvalidGamma { gamma })
-        }
+        if gamma.is_finite() && gamma >= 0.0 { Ok(Self { gamma }) } else { Err(SoftDtwError::InvalidGamma { gamma }) }
     }
 
     /// `D_γ(x, y)`, in the unit of the cost.
@@ -79,11 +75,7 @@ impl SoftDtw {
 
     /// `D_γ(x, x)` of a checked sequence. Exactly 0 for γ = 0.
     pub(crate) fn self_value<const D: usize>(self, x: &[[f64; D]]) -> f64 {
-        if self.gamma == 0.0 {
-            0.0
-        } else {
-            self.value_unchecked(x, x)
-        }
+        if self.gamma == 0.0 { 0.0 } else { self.value_unchecked(x, x) }
     }
 
     /// The value of checked sequences; infinite when it exceeds the range of `f64`.
@@ -94,11 +86,7 @@ impl SoftDtw {
     }
 
     pub(crate) fn grid<'a, const D: usize>(self, rows: &'a [[f64; D]], columns: &'a [[f64; D]]) -> Grid<'a, D> {
-        Grid {
-            rows,
-            columns,
-            gamma: self.gamma,
-        }
+        Grid { rows, columns, gamma: self.gamma }
     }
 }
 
@@ -108,11 +96,7 @@ pub(crate) fn normalise(value: f64, self_x: f64, self_y: f64) -> f64 {
 }
 
 pub(crate) fn finite(value: f64) -> Result<f64, SoftDtwError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(SoftDtwError::Overflow)
-    }
+    if value.is_finite() { Ok(value) } else { Err(SoftDtwError::Overflow) }
 }
 
 /// Checks that the sequence has at least one step and only finite components.
@@ -123,11 +107,8 @@ pub(crate) fn check<const D: usize>(steps: &[[f64; D]], sequence: char) -> Resul
     let numbers = steps.as_flattened();
     match numbers.iter().position(|value| !value.is_finite()) {
         None => Ok(()),
-        Some(index) => Err(SoftDtwError::NonFinite {
-            sequence,
-            step: index / D,
-            component: index % D,
-            value: numbers[index],
-        }),
+        Some(index) => {
+            Err(SoftDtwError::NonFinite { sequence, step: index / D, component: index % D, value: numbers[index] })
+        }
     }
 }

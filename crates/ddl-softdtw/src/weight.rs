@@ -30,10 +30,7 @@ const INTEGERS: f64 = 4_503_599_627_370_496.0;
 #[inline(always)]
 pub(crate) fn below<S: Simd>(simd: S, [significand, exponent]: Cells<S>, top: Weight) -> Cells<S> {
     let [top, top_exponent] = splat(simd, top);
-    [
-        top.slide::<{ STRIP - 1 }>(significand),
-        top_exponent.slide::<{ STRIP - 1 }>(exponent),
-    ]
+    [top.slide::<{ STRIP - 1 }>(significand), top_exponent.slide::<{ STRIP - 1 }>(exponent)]
 }
 
 /// The lanes moved up by one row, `bottom` below them.

@@ -9,10 +9,8 @@ use walks::{Numbers, dtw_of, mapped};
 type Walk = walks::Track<2>;
 
 fn brute_force(dtw: SoftDtw, candidates: &[Walk], query: &Walk) -> Vec<Neighbour> {
-    let evaluated = |(index, y): (usize, &Walk)| Neighbour {
-        index,
-        distance: dtw.normalised(query, y).expect("finite"),
-    };
+    let evaluated =
+        |(index, y): (usize, &Walk)| Neighbour { index, distance: dtw.normalised(query, y).expect("finite") };
     let mut neighbours: Vec<_> = candidates.iter().enumerate().map(evaluated).collect();
     // Stable: ties stay in the order of their indices.
     neighbours.sort_by(|a, b| a.distance.total_cmp(&b.distance));
@@ -86,22 +84,10 @@ fn bad_input_is_refused_by_name() {
     assert_eq!((index.len(), index.is_empty()), (2, false));
     for (error, message) in [
         (SearchIndex::build(&dtw, &none).err(), "no candidates were given"),
-        (
-            SearchIndex::build(&dtw, &[vec![[0.0]], vec![]]).err(),
-            "candidate 1: sequence y is empty",
-        ),
-        (
-            index.nearest(&[[f64::NAN]], 1).err(),
-            "query: sequence x, step 0, component 0 is NaN: must be finite",
-        ),
-        (
-            index.nearest_batch(&[vec![[0.0]], vec![]], 1).err(),
-            "query 1 of the batch: sequence x is empty",
-        ),
-        (
-            index.nearest(&[[0.5]], 2).err(),
-            "query: the soft-DTW value or gradient leaves the range",
-        ),
+        (SearchIndex::build(&dtw, &[vec![[0.0]], vec![]]).err(), "candidate 1: sequence y is empty"),
+        (index.nearest(&[[f64::NAN]], 1).err(), "query: sequence x, step 0, component 0 is NaN: must be finite"),
+        (index.nearest_batch(&[vec![[0.0]], vec![]], 1).err(), "query 1 of the batch: sequence x is empty"),
+        (index.nearest(&[[0.5]], 2).err(), "query: the soft-DTW value or gradient leaves the range"),
     ] {
         let error = error.expect("refused").to_string();
         assert!(error.starts_with(message), "{error}");

@@ -65,10 +65,7 @@ impl Recorder {
             let functions = GraphFunctions {
                 construct: *symbol(cuda, "_ZN2at4cuda9CUDAGraphC1Eb")?,
                 destroy: *symbol(cuda, "_ZN2at4cuda9CUDAGraphD1Ev")?,
-                begin: *symbol(
-                    cuda,
-                    "_ZN2at4cuda9CUDAGraph13capture_beginESt4pairIyyE21cudaStreamCaptureMode",
-                )?,
+                begin: *symbol(cuda, "_ZN2at4cuda9CUDAGraph13capture_beginESt4pairIyyE21cudaStreamCaptureMode")?,
                 end: *symbol(cuda, "_ZN2at4cuda9CUDAGraph11capture_endEv")?,
                 replay: *symbol(cuda, "_ZN2at4cuda9CUDAGraph6replayEv")?,
             };
@@ -86,11 +83,7 @@ impl Recorder {
             set_stream(stream(false, 0));
             let pool = new_pool();
             std::mem::forget(c10);
-            Ok(Self {
-                functions,
-                pool,
-                _of_thread: PhantomData,
-            })
+            Ok(Self { functions, pool, _of_thread: PhantomData })
         }
     }
 

@@ -65,10 +65,7 @@ impl Drop for OneThread {
 
 /// The error when CUDA cannot be used.
 pub(crate) fn no_cuda(problem: String) -> StarError {
-    StarError::Device {
-        device: "cuda".into(),
-        problem,
-    }
+    StarError::Device { device: "cuda".into(), problem }
 }
 
 fn open_cuda() -> Result<(), StarError> {

@@ -24,17 +24,9 @@ struct Recurrent {
 impl Recurrent {
     fn new(layout: &mut Layout, config: &StarConfig) -> Self {
         assert_eq!(config.frame, NetworkFrame::Goal);
-        let [inputs, width, hidden] = [
-            config.temporal_inputs() + 2,
-            config.model_width,
-            config.feed_forward_width,
-        ]
-        .map(|n| n as usize);
-        let sizes = Sizes {
-            width,
-            heads: config.heads as usize,
-            hidden,
-        };
+        let [inputs, width, hidden] =
+            [config.temporal_inputs() + 2, config.model_width, config.feed_forward_width].map(|n| n as usize);
+        let sizes = Sizes { width, heads: config.heads as usize, hidden };
         Self {
             first: layout.linear("first_layer", inputs, width),
             later: layout.linear("later_layer", inputs + width, width),
@@ -77,12 +69,7 @@ impl<B: Backend> Backbone<B> for Recurrent {
 }
 
 fn config() -> StarConfig {
-    StarConfig {
-        model_width: 16,
-        heads: 4,
-        feed_forward_width: 32,
-        ..StarConfig::recommended(Variant::Full)
-    }
+    StarConfig { model_width: 16, heads: 4, feed_forward_width: 32, ..StarConfig::recommended(Variant::Full) }
 }
 
 fn windows() -> Vec<Window> {
@@ -141,10 +128,7 @@ fn a_custom_backbone_is_trained_and_forecasts_without_libtorch() {
         let (ours, reference) = (positions(ours), positions(reference));
         assert_eq!(ours.len(), reference.len());
         let pairs = ours.into_iter().zip(reference);
-        pairs
-            .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
-            .max_by(f64::total_cmp)
-            .unwrap() // NaN is the largest
+        pairs.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).max_by(f64::total_cmp).unwrap() // NaN is the largest
     };
     let difference = apart(&ours, &forecasts(&*exact.into_forecaster()).unwrap());
     assert!(difference < 1e-3, "{difference} m");

@@ -19,13 +19,7 @@ fn device() -> ComputeDevice {
 }
 
 fn small() -> ProposalConfig {
-    ProposalConfig {
-        members: 2,
-        ends: 6,
-        width: 32,
-        neighbour_width: 16,
-        ..ProposalConfig::default()
-    }
+    ProposalConfig { members: 2, ends: 6, width: 32, neighbour_width: 16, ..ProposalConfig::default() }
 }
 
 fn network() -> TorchProposals {
@@ -37,9 +31,7 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
     let walk = |speed: f64, x: f64, y: f64| std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y]);
     PedestrianView {
         own: walk(speed, 0.0, 0.0),
-        neighbours: (0..neighbours)
-            .map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64))
-            .collect(),
+        neighbours: (0..neighbours).map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64)).collect(),
         remembered: Vec::new(),
     }
 }
@@ -49,16 +41,9 @@ fn earlier(angle: f64) -> RememberedTrack {
     let (sin, cos) = angle.sin_cos();
     let track = std::array::from_fn(|t| {
         let way = 0.4 * (t as f64 - 7.0);
-        if t < 8 {
-            [way, 0.1]
-        } else {
-            [way * cos, 0.1 + way * sin]
-        }
+        if t < 8 { [way, 0.1] } else { [way * cos, 0.1 + way * sin] }
     });
-    RememberedTrack {
-        track,
-        distance: 0.01 + angle.abs(),
-    }
+    RememberedTrack { track, distance: 0.01 + angle.abs() }
 }
 
 /// Pedestrians who continue straight or turn left or right by 60 degrees, a third each.
@@ -82,10 +67,7 @@ fn training(steps: u64) -> ProposalTraining {
         steps,
         batch: 32,
         learning_rate: 4e-3,
-        memory: MemoryTraining {
-            steps: MEMORY_STEPS,
-            ..MemoryTraining::default()
-        },
+        memory: MemoryTraining { steps: MEMORY_STEPS, ..MemoryTraining::default() },
         ..ProposalTraining::default()
     }
 }
@@ -166,10 +148,7 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
     };
     let trained = with_memory(150);
     let (alone, remembering) = (error(&trained, 0..2), error(&trained, 2..4));
-    assert!(
-        alone > 2.0 && remembering < 0.7,
-        "{alone:.2} m alone, {remembering:.2} m with memory"
-    );
+    assert!(alone > 2.0 && remembering < 0.7, "{alone:.2} m alone, {remembering:.2} m with memory");
     let strangers: Vec<_> = (0..3).map(|i| view(0.7 * f64::from(i), 2)).collect();
     let proposed = |network: &ProposalNetwork| network.propose(&strangers).unwrap();
     assert_eq!(proposed(&trained), proposed(&with_memory(1)));
@@ -177,9 +156,7 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
 
 #[test]
 fn kernels_propose_the_endpoints_of_libtorch() {
-    let mut views: Vec<PedestrianView> = (0..70_u8)
-        .map(|i| view(0.03 * f64::from(i), usize::from(i % 11)))
-        .collect();
+    let mut views: Vec<PedestrianView> = (0..70_u8).map(|i| view(0.03 * f64::from(i), usize::from(i % 11))).collect();
     views[5].neighbours.push([[40.0, 3.0]; 8]);
     views[6].neighbours = vec![[[40.0, 3.0]; 8]];
     views[7].neighbours = vec![views[7].own];
@@ -248,16 +225,11 @@ fn invalid_examples_are_refused() {
     assert!(error.to_string().contains("of the examples"), "{error}");
 
     // The error does not name the valid examples before them.
-    let only_reversed = ProposalTraining {
-        reversed: 1.0,
-        ..training(5)
-    };
+    let only_reversed = ProposalTraining { reversed: 1.0, ..training(5) };
     let broken = &broken[..7];
     let mut trainer = ProposalTrainer::new(network(), &examples(), broken, only_reversed).unwrap();
     let error = trainer.step().unwrap_err();
-    let StarError::ProposalNonFinite { example, reversed, .. } = error else {
-        panic!("{error}")
-    };
+    let StarError::ProposalNonFinite { example, reversed, .. } = error else { panic!("{error}") };
     assert!(reversed && example < broken.len(), "{error}");
     let said = format!("number {example} of the reversed examples");
     assert!(error.to_string().contains(&said), "{error}");

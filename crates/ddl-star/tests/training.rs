@@ -19,10 +19,7 @@ fn windows() -> Vec<Window> {
 }
 
 fn config(variant: Variant) -> StarConfig {
-    StarConfig {
-        feed_forward_width: 64,
-        ..StarConfig::published(variant)
-    }
+    StarConfig { feed_forward_width: 64, ..StarConfig::published(variant) }
 }
 
 fn trainer(variant: Variant, epochs: usize) -> Trainer {
@@ -59,10 +56,7 @@ fn every_variant_learns() {
 
 /// Training on paths to goals other than the true endpoints, in the pedestrians' own frames, also with time reversed.
 fn path_trainer(epochs: usize, jitter: f64) -> Trainer {
-    let config = StarConfig {
-        feed_forward_width: 64,
-        ..StarConfig::recommended(Variant::Full)
-    };
+    let config = StarConfig { feed_forward_width: 64, ..StarConfig::recommended(Variant::Full) };
     let training = TrainingConfig {
         epochs,
         batch_pedestrians: 40,
@@ -74,10 +68,7 @@ fn path_trainer(epochs: usize, jitter: f64) -> Trainer {
     let mut windows = windows();
     windows.extend(windows.clone().iter().map(Window::reversed));
     let aside = |[x, y]: [f64; 2]| [x + 0.3, y - 0.2];
-    let goals = windows
-        .iter()
-        .map(|window| (0..window.len()).map(|i| aside(window.track(i)[19])).collect())
-        .collect();
+    let goals = windows.iter().map(|window| (0..window.len()).map(|i| aside(window.track(i)[19])).collect()).collect();
     let network = TorchNetwork::new(config, 7, cpu()).unwrap();
     Trainer::new(network, windows, Some(goals), training).unwrap()
 }
@@ -99,10 +90,7 @@ fn every_pedestrian_needs_a_goal() {
     let mut goals: Vec<Vec<_>> = windows().iter().map(|w| vec![[0.0; 2]; w.len()]).collect();
     goals[3].pop();
     let error = Trainer::new(network, windows(), Some(goals), training).unwrap_err();
-    assert!(
-        matches!(error, StarError::Network(NetworkError::Shape { .. })),
-        "{error}"
-    );
+    assert!(matches!(error, StarError::Network(NetworkError::Shape { .. })), "{error}");
 }
 
 fn resumed(trainer: impl Fn() -> Trainer, stop: u64) -> Vec<f32> {

@@ -32,9 +32,7 @@ pub fn forecast(
 ) -> Result<JsValue, JsError> {
     asked(options, |options| {
         let name = name.as_string().ok_or("the name of the file is no string")?;
-        let bytes = bytes
-            .dyn_ref::<Uint8Array>()
-            .ok_or("the bytes of the file are no Uint8Array")?;
+        let bytes = bytes.dyn_ref::<Uint8Array>().ok_or("the bytes of the file are no Uint8Array")?;
         let tracks = Tracks::read(&name, &bytes.to_vec(), &options)?;
         let windows = tracks.windows(tracks.observed.windows.clone(), &options)?;
         let forecasts = tracks::forecasts(&windows, &options)?;
@@ -58,9 +56,7 @@ pub fn view(
 
 /// An answer by these options.
 fn asked(options: &JsValue, answer: impl FnOnce(Options) -> Result<JsValue, Failure>) -> Result<JsValue, JsError> {
-    exchange::read(options, &[])
-        .and_then(answer)
-        .map_err(|failure| thrown(&*failure))
+    exchange::read(options, &[]).and_then(answer).map_err(|failure| thrown(&*failure))
 }
 
 /// The built-in model, loaded once.

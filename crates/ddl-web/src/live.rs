@@ -53,13 +53,7 @@ impl Live {
         if !options.regions()?.is_empty() {
             forecaster = forecaster.with_adaptive_regions(AdaptiveRegions::default());
         }
-        Ok(Self {
-            forecaster,
-            options,
-            clock,
-            are_times: given.is_none(),
-            motions: UnfamiliarMotions::default(),
-        })
+        Ok(Self { forecaster, options, clock, are_times: given.is_none(), motions: UnfamiliarMotions::default() })
     }
 
     /// Adds a moment, in order of time: `ids` of its pedestrians, and `xy`, the x and y of each in turn, metres.
@@ -77,11 +71,7 @@ impl Live {
         if positions.len() != ids.len() || !rest.is_empty() {
             return Err(format!("{} ids but {} numbers in xy; give two for each id", ids.len(), xy.len()).into());
         }
-        let frame = if self.are_times {
-            (MICROSECONDS * moment).round()
-        } else {
-            moment
-        };
+        let frame = if self.are_times { (MICROSECONDS * moment).round() } else { moment };
         let is_exact = |number: f64| number.fract() == 0.0 && number.abs() < 1.0 / f64::EPSILON;
         if let Some(id) = ids.iter().find(|id| !is_exact(**id)) {
             return Err(format!("ids must be whole numbers below 2^52, not {id}").into());
@@ -91,10 +81,7 @@ impl Live {
             return Err(format!("the moment is {moment}; {right}").into());
         }
         let frame = frame as i64;
-        let seen = ids
-            .iter()
-            .zip(positions)
-            .map(|(id, position)| (PedestrianId(*id as i64), *position));
+        let seen = ids.iter().zip(positions).map(|(id, position)| (PedestrianId(*id as i64), *position));
         let now = if self.options.joint {
             self.forecaster.push_joint(frame, seen, None)
         } else {

@@ -31,9 +31,7 @@ impl Tracks {
         let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
         let mut rows = parse_columns(bytes, name, format, &choice)?.with_name(&*stem);
         if let Some(homography) = units.homography {
-            rows = homography
-                .to_ground(&rows)
-                .map_err(|error| format!("{name}: {error}"))?;
+            rows = homography.to_ground(&rows).map_err(|error| format!("{name}: {error}"))?;
         }
         let timed = TimedRecording::new(&rows, &units, &TrackUnits::default());
         let timed = timed.map_err(|error| format!("{name}: {error}"))?;
@@ -63,10 +61,7 @@ impl Tracks {
     ) -> Result<(String, Vec<String>), Failure> {
         let mut motions = UnfamiliarMotions::default();
         let lines = lines(windows, forecasts, self.observed.clock, options, &mut motions)?;
-        Ok((
-            lines,
-            motions.warning().into_iter().chain(self.told.iter().cloned()).collect(),
-        ))
+        Ok((lines, motions.warning().into_iter().chain(self.told.iter().cloned()).collect()))
     }
 
     /// Some of its windows, with the tracks of earlier pedestrians if they are asked for.
@@ -75,9 +70,7 @@ impl Tracks {
             return Ok(windows);
         }
         let count = model()?.goal_model().recalled_per_pedestrian()?;
-        Ok(self
-            .empty_memory()?
-            .replay(&self.observed.recording, Playback::Forward, windows, count)?)
+        Ok(self.empty_memory()?.replay(&self.observed.recording, Playback::Forward, windows, count)?)
     }
 
     /// A picture of where its pedestrians walk, appear and disappear, as SVG.
@@ -86,11 +79,7 @@ impl Tracks {
         memory.observe_recording(&self.observed.recording)?;
         let tracks: Vec<_> = memory.tracks().collect();
         let numbers = format!("{} segments of {} tracks", memory.segments(), tracks.len());
-        Ok(ddl::report::figure::place(
-            self.observed.recording.name(),
-            &numbers,
-            &tracks,
-        ))
+        Ok(ddl::report::figure::place(self.observed.recording.name(), &numbers, &tracks))
     }
 
     fn empty_memory(&self) -> Result<SceneMemory, Failure> {
@@ -116,9 +105,7 @@ pub(crate) fn forecasts(windows: &[Window], options: &Options) -> Result<Vec<For
     }
     let mut adaptive = AdaptiveRegions::default();
     let pairs = windows.iter().zip(forecasts);
-    Ok(pairs
-        .map(|(window, forecast)| adaptive.adapt(window, forecast))
-        .collect())
+    Ok(pairs.map(|(window, forecast)| adaptive.adapt(window, forecast)).collect())
 }
 
 /// Forecasts as the program's JSON lines. Motions unlike the training motions are counted.
@@ -133,10 +120,6 @@ pub(crate) fn lines(
     let moments = pairs.map(|(window, forecast)| Moment::new(window, forecast, clock));
     let moments: Vec<Moment<'_>> = moments.collect();
     motions.add(&moments);
-    let of_moments = if options.joint {
-        ddl::joint_lines
-    } else {
-        ddl::json_lines
-    };
+    let of_moments = if options.joint { ddl::joint_lines } else { ddl::json_lines };
     Ok(of_moments(&moments, options.regions()?)?)
 }

@@ -122,16 +122,10 @@ pub(crate) fn more_for_validation(recordings: usize) -> String {
 
 impl DdlError {
     pub(crate) fn run(path: impl Into<PathBuf>, problem: impl Into<String>) -> Self {
-        Self::Run {
-            path: path.into(),
-            problem: problem.into(),
-        }
+        Self::Run { path: path.into(), problem: problem.into() }
     }
 
     pub(crate) fn io(path: impl Into<PathBuf>, source: std::io::Error) -> Self {
-        Self::Io {
-            path: path.into(),
-            source,
-        }
+        Self::Io { path: path.into(), source }
     }
 }

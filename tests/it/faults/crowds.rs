@@ -79,10 +79,7 @@ fn thousands_of_pedestrians_are_forecast() {
         };
         let [less, time] = [less, time].map(|time| time.as_secs_f64());
         let factor = time / less;
-        assert!(
-            factor < 11.0,
-            "{what}: {factor} times as long for four times the pedestrians"
-        );
+        assert!(factor < 11.0, "{what}: {factor} times as long for four times the pedestrians");
         assert!(bytes < most, "{what}: {bytes} bytes");
         let mib = bytes >> 20;
         eprintln!("{what}: {time:.1} s for {count} pedestrians, {less:.1} s for {few}; at most {mib} MiB");

@@ -59,27 +59,19 @@ fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Vec<
 #[test]
 fn a_day_of_forecasts_needs_constant_memory() {
     let size = nightly::rounds((3_000, 600), (24 * HOUR, HOUR));
-    watched(
-        "a live stream, one forecast per pedestrian",
-        "a_day_of_forecasts_needs_constant_memory",
-        size,
-        || {
-            ddl::prepare(DeviceChoice::Cpu, Some(1)).unwrap();
-            let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
-            stream(Made(|windows: &[Window]| model.forecast_central(windows)), size)
-        },
-    );
+    watched("a live stream, one forecast per pedestrian", "a_day_of_forecasts_needs_constant_memory", size, || {
+        ddl::prepare(DeviceChoice::Cpu, Some(1)).unwrap();
+        let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
+        stream(Made(|windows: &[Window]| model.forecast_central(windows)), size)
+    });
 }
 
 #[test]
 fn a_day_of_tracks_needs_constant_memory() {
     let size = (24 * HOUR, HOUR);
-    watched(
-        "a live stream, constant velocity",
-        "a_day_of_tracks_needs_constant_memory",
-        size,
-        || stream(ConstantVelocity::LastStep, size),
-    );
+    watched("a live stream, constant velocity", "a_day_of_tracks_needs_constant_memory", size, || {
+        stream(ConstantVelocity::LastStep, size)
+    });
 }
 
 fn watched(what: &str, test: &str, (frames, part): (usize, usize), stream: impl FnOnce() -> Option<Vec<f64>>) {

@@ -11,13 +11,13 @@ use std::path::Path;
 fn stopped(at: fn(&TrainingStep) -> bool) -> Contents {
     let folder = tempfile::tempdir().unwrap();
     let run = RunDirectory::new(folder.path());
-    let error = trained_model::train_until(&run, |step| {
-        if at(step) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    });
+    let error =
+        trained_model::train_until(
+            &run,
+            |step| {
+                if at(step) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            },
+        );
     assert!(matches!(error, Err(DdlError::Interrupted)), "{error:?}");
     folder_contents::read(folder.path())
 }

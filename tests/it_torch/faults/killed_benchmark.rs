@@ -42,13 +42,7 @@ fn finish(place: &Place) -> Contents {
     let logs = contents.iter().filter(|(name, _)| name.ends_with("log.txt"));
     let logs = logs.map(|(_, log)| String::from_utf8_lossy(log.as_deref().unwrap_or_default()));
     assert!(status.success(), "{status}: {}", logs.collect::<String>());
-    let compared = [
-        "model.safetensors",
-        "proposal.safetensors",
-        "report.json",
-        "moments.json",
-        "summary.md",
-    ];
+    let compared = ["model.safetensors", "proposal.safetensors", "report.json", "moments.json", "summary.md"];
     contents.retain(|name, _| compared.iter().any(|compared| name.ends_with(compared)));
     for (name, bytes) in &mut contents {
         if let (true, Some(bytes)) = (name.ends_with("report.json"), bytes) {

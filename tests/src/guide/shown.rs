@@ -46,9 +46,9 @@ fn agree(shown: &[&str], real: &[&str]) -> bool {
     match shown {
         [] => real.is_empty(),
         ["...", shown @ ..] => (0..=real.len()).any(|left_out| agree(shown, &real[left_out..])),
-        [line, shown @ ..] => real
-            .split_first()
-            .is_some_and(|(real_line, real)| line_agrees(line, real_line) && agree(shown, real)),
+        [line, shown @ ..] => {
+            real.split_first().is_some_and(|(real_line, real)| line_agrees(line, real_line) && agree(shown, real))
+        }
     }
 }
 

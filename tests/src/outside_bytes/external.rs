@@ -26,11 +26,7 @@ pub(super) fn check(bytes: &[u8], format: ExternalFormat) {
     let Some((&part, file)) = bytes.split_first() else {
         return;
     };
-    let coverage = if part & 1 == 0 {
-        Coverage::Intersection
-    } else {
-        Coverage::Whole
-    };
+    let coverage = if part & 1 == 0 { Coverage::Intersection } else { Coverage::Whole };
     let read = |file: &[u8], format| external::read_from(file, "fuzzed", format, windows(), coverage);
     let matched = match read(file, format) {
         Ok(matched) => matched,

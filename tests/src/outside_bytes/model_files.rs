@@ -73,11 +73,7 @@ pub(super) fn run_config(bytes: &[u8]) {
         match with_file(&path, &text, |_| run.config()) {
             Err(error) => names_file(&error, &folder.path().display().to_string()),
             Ok(config) => {
-                let _ = (
-                    config.star.check(),
-                    config.goals.check(),
-                    config.training.check(config.star.variant),
-                );
+                let _ = (config.star.check(), config.goals.check(), config.training.check(config.star.variant));
                 let written = serde_json::to_string(&config).expect("a valid configuration can be written");
                 let again = with_file(&path, written.as_bytes(), |_| run.config());
                 assert_eq!(again.ok(), Some(config));
@@ -113,9 +109,7 @@ pub(super) fn weights(choices: &[u8]) {
         });
     }
     VALID.with(|valid| {
-        let read = valid.read(choices, |(weights, origin), path| {
-            load_weights(weights.layout(), origin, path)
-        });
+        let read = valid.read(choices, |(weights, origin), path| load_weights(weights.layout(), origin, path));
         if let Ok(weights) = read {
             assert!(weights.numbers().iter().all(|number| number.is_finite()));
             assert!(choices.len() > 1 || weights == valid.with.0);

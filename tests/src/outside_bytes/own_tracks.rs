@@ -25,9 +25,7 @@ pub(super) fn read(bytes: &[u8]) {
     };
     cut(&recording);
     let frame_time = FRAME_TIMES[usize::from(*rate) % FRAME_TIMES.len()];
-    let clock = recording
-        .stated_clock()
-        .unwrap_or_else(|| Clock::with_frame_time(frame_time));
+    let clock = recording.stated_clock().unwrap_or_else(|| Clock::with_frame_time(frame_time));
     if let Ok(recording) = clock.and_then(|clock| recording.on_clock(clock)) {
         bounded(&recording);
         cut(&recording);
@@ -37,9 +35,7 @@ pub(super) fn read(bytes: &[u8]) {
 fn cut(recording: &Recording) {
     let last = recording.frames().last().copied();
     let whole = recording.observed_windows();
-    let partial = recording
-        .observe(recording.live_tracks().with_completeness(Completeness::Partial))
-        .windows;
+    let partial = recording.observe(recording.live_tracks().with_completeness(Completeness::Partial)).windows;
     assert!(whole.len() <= partial.len() && partial.len() <= recording.frames().len());
     for window in &partial {
         assert_eq!(window.steps(), OBSERVED);

@@ -46,9 +46,7 @@ pub(super) fn read(choices: &[u8]) {
         });
     }
     let read = VALID.with(|valid| {
-        valid.read(choices, |(), path| {
-            Ok::<_, MemoryError>((SceneMemory::read(path)?, path.to_owned()))
-        })
+        valid.read(choices, |(), path| Ok::<_, MemoryError>((SceneMemory::read(path)?, path.to_owned())))
     });
     let Ok((mut memory, path)) = read else { return };
     // Writing waits for the disk, so few inputs do it.

@@ -13,12 +13,7 @@ use super::valid_file::ValidFile;
 
 fn training() -> Result<(Trainer, Origin), Box<dyn std::error::Error>> {
     let config = smallest_config();
-    let training = TrainingConfig {
-        objective: Objective::NextStep,
-        jitter: 0.0,
-        epochs: 3,
-        ..config.training.clone()
-    };
+    let training = TrainingConfig { objective: Objective::NextStep, jitter: 0.0, epochs: 3, ..config.training.clone() };
     let walk = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
     let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
     let device = ComputeDevice::open(DeviceChoice::Cpu)?;
@@ -43,9 +38,7 @@ pub(super) fn read(bytes: &[u8]) {
     VALID.with(|valid| {
         let steps = || valid.with.0.borrow().steps();
         let before = steps();
-        let read = valid.read(bytes, |(trainer, origin), path| {
-            trainer.borrow_mut().resume(origin, path)
-        });
+        let read = valid.read(bytes, |(trainer, origin), path| trainer.borrow_mut().resume(origin, path));
         if read.is_err() {
             assert_eq!(steps(), before, "an error changes nothing");
         } else {

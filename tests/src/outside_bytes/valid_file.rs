@@ -23,13 +23,7 @@ impl<T> ValidFile<T> {
         let with = write(&path);
         let bytes = std::fs::read(&path).expect("the file was written");
         assert!(repair(&bytes).is_some(), "{name} has a digest");
-        Self {
-            with,
-            path,
-            bytes,
-            repair,
-            _folder: folder,
-        }
+        Self { with, path, bytes, repair, _folder: folder }
     }
 
     /// Reads edits of the file; the first byte decides whether they are repaired. With at most one byte nothing is

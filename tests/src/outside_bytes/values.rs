@@ -37,10 +37,7 @@ pub(super) fn moments(bytes: &[u8]) {
         return;
     };
     let empty = Report::new("none", []).expect("no rows, no conflict");
-    let page = Page {
-        moments: &moments,
-        ..Page::new(&empty)
-    };
+    let page = Page { moments: &moments, ..Page::new(&empty) };
     // Incomplete moments are refused, by both functions alike.
     assert_eq!(page.comparison().is_ok(), page.to_html().is_ok());
 }

@@ -44,9 +44,7 @@ fn value<'a>(options: &'a [String], name: &str) -> Option<&'a str> {
 pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
     remove_folder(&workspace.path("target/ci-benchmark"))?;
     let options = "benchmark --profile smoke --protocol published,fair,single --out target/ci-benchmark";
-    run(workspace
-        .program(workspace.path("target/debug/ddl"))
-        .args(options.split(' ')))
+    run(workspace.program(workspace.path("target/debug/ddl")).args(options.split(' ')))
 }
 
 #[test]

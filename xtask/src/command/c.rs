@@ -67,11 +67,9 @@ pub(super) fn install(workspace: &Workspace, profile: &str, prefix: &Path) -> Re
         let _ = fs::remove_file(lib.join(link));
         std::os::unix::fs::symlink(target, lib.join(link)).context("the name of the library")?;
     }
-    for (template, folder) in [
-        ("ddl.pc", "pkgconfig"),
-        ("ddl-config.cmake", "cmake/ddl"),
-        ("ddl-config-version.cmake", "cmake/ddl"),
-    ] {
+    for (template, folder) in
+        [("ddl.pc", "pkgconfig"), ("ddl-config.cmake", "cmake/ddl"), ("ddl-config-version.cmake", "cmake/ddl")]
+    {
         let text = fs::read_to_string(source.join("cmake").join(template)).context(template)?;
         let text = text.replace("@VERSION@", version).replace("@SONAME@", &soname);
         fs::write(lib.join(folder).join(template), text.replace("@NATIVE@", NATIVE)).context(template)?;
@@ -126,18 +124,10 @@ pub(super) fn check_all(workspace: &Workspace) -> Result<()> {
 type Trial = [&'static str; 4];
 const RELEASED: Trial = ["released", "-O2", "-DPEOPLE=25", "none"];
 const DEVELOPMENT: Trial = ["development", "-O2", "-DPEOPLE=6", "none"];
-const SANITIZED: Trial = [
-    "sanitized",
-    "-g -fsanitize=address,undefined -fno-sanitize-recover=all",
-    "-DPEOPLE=1",
-    "allocations",
-];
-const WATCHED: Trial = [
-    "watched",
-    "-g",
-    "-DCMAKE_CROSSCOMPILING_EMULATOR=valgrind;--quiet;--error-exitcode=9",
-    "allocations",
-];
+const SANITIZED: Trial =
+    ["sanitized", "-g -fsanitize=address,undefined -fno-sanitize-recover=all", "-DPEOPLE=1", "allocations"];
+const WATCHED: Trial =
+    ["watched", "-g", "-DCMAKE_CROSSCOMPILING_EMULATOR=valgrind;--quiet;--error-exitcode=9", "allocations"];
 
 /// Builds the example and the tests against an installed library with `CMake`, and runs them.
 fn test(workspace: &Workspace, prefix: &Path, compiler: &str, trial: Trial) -> Result<()> {

@@ -24,12 +24,8 @@ const CHECKS: [Check; 11] = [
     ("libtorch, recordings, browser, Python packages", bring_all_in),
     ("dependencies and packages", dependencies),
     ("lints", |workspace| lints(workspace, FEATURES)),
-    ("documentation site", |workspace| {
-        docs::build(workspace, &format!("--features {FEATURES}"))
-    }),
-    ("build", |workspace| {
-        test::build(workspace).and_then(|()| test::build_with_torch(workspace))
-    }),
+    ("documentation site", |workspace| docs::build(workspace, &format!("--features {FEATURES}"))),
+    ("build", |workspace| test::build(workspace).and_then(|()| test::build_with_torch(workspace))),
     ("report page in a browser", report_page),
     ("benchmark", benchmark::smoke),
     ("Python package", python::check),
@@ -60,11 +56,9 @@ fn text(workspace: &Workspace) -> Result<()> {
     run_command(&mut workspace.cargo(["fmt", "--all", "--check"])).context("run `cargo fmt --all`")?;
     tidy::run(workspace)?;
     let tools = Tools::ensure(workspace)?;
-    for [program, arguments] in [
-        ["ruff", "format --check --quiet"],
-        ["ruff", "check --quiet"],
-        ["typos", "--format brief"],
-    ] {
+    for [program, arguments] in
+        [["ruff", "format --check --quiet"], ["ruff", "check --quiet"], ["typos", "--format brief"]]
+    {
         run_command(tools.program(workspace, program).args(arguments.split(' ')))?;
     }
     let files = workspace.files()?;
@@ -90,8 +84,7 @@ fn bring_all_in(workspace: &Workspace) -> Result<()> {
     let jobs: [fn(&Workspace) -> Result<()>; 4] = [set_up, recordings::bring_in, fetch, programs];
     thread::scope(|scope| {
         let jobs = jobs.map(|job| scope.spawn(move || job(workspace)));
-        jobs.into_iter()
-            .try_for_each(|job| job.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+        jobs.into_iter().try_for_each(|job| job.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })
 }
 

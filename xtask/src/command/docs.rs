@@ -48,12 +48,7 @@ pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
     let folders = fs::read_dir(&api)?.flatten();
     let fronts = folders.map(|folder| folder.path().join("index.html"));
     let mut lychee = tools.program(workspace, "lychee");
-    lychee.args([
-        "--root-dir".as_ref(),
-        site.as_path(),
-        &site.join("index.html"),
-        &site.join("guide"),
-    ]);
+    lychee.args(["--root-dir".as_ref(), site.as_path(), &site.join("index.html"), &site.join("guide")]);
     run_command(lychee.args(fronts.filter(|page| page.is_file()))).context("links of the site lead nowhere (above)")
 }
 

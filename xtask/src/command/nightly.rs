@@ -67,10 +67,7 @@ impl Arguments {
             return Ok(());
         };
         let is_one = asked != Check::All;
-        ensure!(
-            is_one || self.rest.is_empty(),
-            "words are for one check: name it instead of all"
-        );
+        ensure!(is_one || self.rest.is_empty(), "words are for one check: name it instead of all");
         let mut failed = Vec::new();
         let is_asked = |check: &&Check| asked == **check || asked == Check::All && **check != asked;
         for check in checks.iter().filter(is_asked) {
@@ -143,11 +140,7 @@ fn mutants(workspace: &Workspace, words: &[String]) -> Result<()> {
         command.env("DDL_DATASETS", &recordings);
         command
     };
-    let words = if words.is_empty() {
-        sample(&mut mutants(&["--list".to_owned()]))?
-    } else {
-        words.to_vec()
-    };
+    let words = if words.is_empty() { sample(&mut mutants(&["--list".to_owned()]))? } else { words.to_vec() };
     println!("cargo xtask nightly mutants -- {}", words.join(" "));
     let Err(failure) = run(&mut mutants(&words)) else {
         return Ok(());
@@ -183,10 +176,6 @@ fn sanitizer(workspace: &Workspace, words: &[String]) -> Result<()> {
     let tests = "run nightly cargo test --lib --tests --target x86_64-unknown-linux-gnu --target-dir target/sanitizer \
                  -p ddl-simd -p ddl-softdtw -p ddl-network -p ddl-goal";
     let mut rustup = workspace.program("rustup");
-    rustup
-        .args(tests.split(' '))
-        .args(words)
-        .env("RUSTFLAGS", "-Zsanitizer=address")
-        .env_remove("RUSTUP_TOOLCHAIN");
+    rustup.args(tests.split(' ')).args(words).env("RUSTFLAGS", "-Zsanitizer=address").env_remove("RUSTUP_TOOLCHAIN");
     run(&mut rustup)
 }

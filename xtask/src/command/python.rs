@@ -117,19 +117,12 @@ fn build(workspace: &Workspace) -> Result<PathBuf> {
     let wheel = built.find_map(|entry| Some(entry.path()).filter(is_wheel));
     let wheel = wheel.context("no wheel was built")?;
     let size = fs::metadata(&wheel)?.len();
-    ensure!(
-        size <= LARGEST,
-        "{} has {size} bytes, more than {LARGEST}: find out which files grew",
-        wheel.display()
-    );
+    ensure!(size <= LARGEST, "{} has {size} bytes, more than {LARGEST}: find out which files grew", wheel.display());
     Ok(wheel)
 }
 
 fn test(workspace: &Workspace, rest: &[String]) -> Result<()> {
-    for check in [
-        "-m mypy --strict -p ddl_forecast",
-        "-m mypy.stubtest ddl_forecast._core",
-    ] {
+    for check in ["-m mypy --strict -p ddl_forecast", "-m mypy.stubtest ddl_forecast._core"] {
         run(in_environment(workspace, "python").args(check.split(' ')))?;
     }
     let mut pytest = in_environment(workspace, "python");

@@ -48,10 +48,7 @@ impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let notes = notes(&fs::read_to_string(workspace.path("CHANGELOG.md"))?, self.dry_run)?;
         let status = read(workspace.program("git").args(["status", "--porcelain"]))?;
-        ensure!(
-            self.dry_run || status.is_empty(),
-            "a release is a commit, but files have changed:\n{status}"
-        );
+        ensure!(self.dry_run || status.is_empty(), "a release is a commit, but files have changed:\n{status}");
         let files = workspace.path(FILES);
         remove_folder(&files)?;
         fs::create_dir_all(&files)?;
@@ -72,15 +69,11 @@ impl Arguments {
 /// What the changelog says of this version; without a date it is not one to publish.
 fn notes(changelog: &str, dry_run: bool) -> Result<String> {
     let start = format!("## {VERSION} - ");
-    let section = changelog
-        .split("\n## ")
-        .find_map(|part| format!("## {part}").strip_prefix(&start).map(str::to_owned));
+    let section =
+        changelog.split("\n## ").find_map(|part| format!("## {part}").strip_prefix(&start).map(str::to_owned));
     let section = section.with_context(|| format!("CHANGELOG.md has no section `{start}DATE`"))?;
     if section.starts_with("unreleased") {
-        ensure!(
-            dry_run,
-            "CHANGELOG.md calls {VERSION} unreleased: write the date of the release"
-        );
+        ensure!(dry_run, "CHANGELOG.md calls {VERSION} unreleased: write the date of the release");
         eprintln!("note: CHANGELOG.md calls {VERSION} unreleased");
     }
     Ok(format!("# DDL {VERSION}, {section}"))
@@ -184,8 +177,7 @@ fn pack(workspace: &Workspace, files: &Path, name: &str) -> Result<()> {
         fs::copy(workspace.path(licence), folder.join(licence)).context(licence)?;
     }
     let mut tar = workspace.program("tar");
-    tar.args(["--sort=name", "--owner=0", "--group=0", "-czf"])
-        .arg(files.join(format!("{name}.tar.gz")));
+    tar.args(["--sort=name", "--owner=0", "--group=0", "-czf"]).arg(files.join(format!("{name}.tar.gz")));
     run(tar.arg("-C").arg(workspace.path("target/portable")).arg(name))
 }
 

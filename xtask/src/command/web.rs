@@ -48,16 +48,9 @@ pub(super) fn build(workspace: &Workspace) -> Result<()> {
     let package = workspace.path(PACKAGE);
     let bindgen = "run --quiet --package xtask --features bindgen --bin bindgen --target-dir target/xtask --";
     let mut bindgen = workspace.cargo(bindgen.split(' '));
-    bindgen
-        .arg(workspace.path(BUILT).join(TARGET).join("release/ddl_forecast.wasm"))
-        .arg(&package);
+    bindgen.arg(workspace.path(BUILT).join(TARGET).join("release/ddl_forecast.wasm")).arg(&package);
     run(bindgen.arg(workspace.path(BUILT).join("page")))?;
-    let sources = [
-        "crates/ddl-web/npm/node.js",
-        "crates/ddl-web/README.md",
-        "LICENSE-MIT",
-        "LICENSE-APACHE",
-    ];
+    let sources = ["crates/ddl-web/npm/node.js", "crates/ddl-web/README.md", "LICENSE-MIT", "LICENSE-APACHE"];
     for file in sources {
         let name = Path::new(file).file_name().unwrap_or_default();
         fs::copy(workspace.path(file), package.join(name)).with_context(|| file.to_owned())?;
@@ -82,8 +75,7 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
         fs::copy(entry.path(), user.join(entry.file_name()))?;
     }
     let mut npm = workspace.program("npm");
-    npm.args("install --install-links --no-audit --no-fund --no-save --prefix".split(' '))
-        .arg(&user);
+    npm.args("install --install-links --no-audit --no-fund --no-save --prefix".split(' ')).arg(&user);
     run(npm.args(PACKAGES).arg(made.join("npm")))?;
     let mut types = workspace.program(user.join("node_modules/.bin/tsc"));
     run(types.arg("--project").arg(&user))?;

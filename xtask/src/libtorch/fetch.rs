@@ -17,8 +17,7 @@ const SCRIPT: &str = include_str!("../python/libtorch.py");
 pub(super) fn is_complete(folder: &Path) -> bool {
     let mark = fs::read_to_string(folder.join(".complete")).unwrap_or_default();
     let sums = REQUIREMENTS.split("--hash=sha256:").skip(1);
-    sums.filter_map(|rest| rest.split_whitespace().next())
-        .all(|sum| mark.contains(sum))
+    sums.filter_map(|rest| rest.split_whitespace().next()).all(|sum| mark.contains(sum))
 }
 
 /// Fills the cache folder from the package index, or from a folder of wheels.

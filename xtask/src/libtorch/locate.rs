@@ -60,9 +60,7 @@ mod tests {
                 write_file(&folder.path().join(file), b"").unwrap();
             }
             write_file(&folder.path().join(version_file), contents.as_bytes()).unwrap();
-            let message = validate(folder.path())
-                .err()
-                .map_or_else(String::new, |error| error.to_string());
+            let message = validate(folder.path()).err().map_or_else(String::new, |error| error.to_string());
             let is_right = message.is_empty() == reason.is_empty() && message.contains(reason);
             assert!(is_right, "{message}");
         }

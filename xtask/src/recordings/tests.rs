@@ -16,16 +16,12 @@ fn entry(folder: &Path, seconds: &[Option<&[u8]>]) -> Entry {
             write_file(&source.join("two.csv"), second).unwrap();
         }
         let address = format!("file://{}/source%20{index}/{{path}}", folder.display());
-        parts.push(format!(
-            "[[source]]\nname = 'source {index}'\nkind = 'address'\naddress = '{address}'\n"
-        ));
+        parts.push(format!("[[source]]\nname = 'source {index}'\nkind = 'address'\naddress = '{address}'\n"));
     }
     for (name, bytes) in [("one.csv", ONE), ("two.csv", TWO)] {
         write_file(&folder.join(name), bytes).unwrap();
         let (sum, length) = (sha256(&folder.join(name)).unwrap(), bytes.len());
-        parts.push(format!(
-            "[[file]]\nname = '{name}'\npath = '{name}'\nbytes = {length}\nsha256 = '{sum}'\n"
-        ));
+        parts.push(format!("[[file]]\nname = '{name}'\npath = '{name}'\nbytes = {length}\nsha256 = '{sum}'\n"));
     }
     toml::from_str(&parts.concat()).unwrap()
 }

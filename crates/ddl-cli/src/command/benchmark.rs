@@ -46,10 +46,8 @@ enum Executor {
 /// Each model is trained in a process of its own. After Ctrl-C the processes save their state, and the same command
 /// resumes. In a checkout, `cargo xtask benchmark` first fetches libtorch and the recordings and builds this program.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Examples:\n  ddl benchmark\n  ddl benchmark --convention simulated --profile smoke --out \
-        runs/smoke\n  ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron"
-)]
+#[command(after_help = "Examples:\n  ddl benchmark\n  ddl benchmark --convention simulated --profile smoke --out \
+        runs/smoke\n  ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron")]
 pub(crate) struct Benchmark {
     #[command(flatten)]
     choice: PlanOptions,
@@ -182,10 +180,7 @@ impl Benchmark {
         let interrupt = catch()?;
         let tasks = plan.tasks.len();
         let (jobs, threads) = side_by_side(self.jobs, plan.settings.device, self.cores(), tasks);
-        tell(format_args!(
-            "plan: {tasks} tasks, {jobs} at a time with {threads} threads each, in {}",
-            out.display()
-        ));
+        tell(format_args!("plan: {tasks} tasks, {jobs} at a time with {threads} threads each, in {}", out.display()));
         let display = Display::new(&plan.tasks, self.reporting.telling.progress);
         let watch = |task: &Task, event: work::Event<'_>| display.hear(task, event);
         let workers = self.workers(jobs, threads)?;
@@ -194,12 +189,7 @@ impl Benchmark {
     }
 
     fn workers(&self, jobs: usize, threads: usize) -> anyhow::Result<Workers> {
-        Ok(Workers {
-            program: vec![this_program()?.into()],
-            jobs,
-            threads,
-            commit: self.reporting.commit.clone(),
-        })
+        Ok(Workers { program: vec![this_program()?.into()], jobs, threads, commit: self.reporting.commit.clone() })
     }
 
     fn cores(&self) -> usize {
@@ -212,9 +202,7 @@ impl Benchmark {
 /// at any point.
 fn catch() -> anyhow::Result<Interrupt> {
     Interrupt::catch_until(3, |wishes| match wishes {
-        1 => tell(format_args!(
-            "\nstopping: running tasks save their state (Ctrl-C again: stop at once)"
-        )),
+        1 => tell(format_args!("\nstopping: running tasks save their state (Ctrl-C again: stop at once)")),
         _ => tell(format_args!("\nstopping at once")),
     })
 }

@@ -23,10 +23,8 @@ use std::path::{Path, PathBuf};
 /// writes, it prints what was observed there.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
-#[command(
-    after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json\n  \
-        ddl data hall.memory --svg hall.svg"
-)]
+#[command(after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json\n  \
+        ddl data hall.memory --svg hall.svg")]
 pub(crate) struct Data {
     /// Files of tracks in any format that `ddl forecast` reads, folders of such files, or memories of places
     #[arg(value_name = "TRACKS", required = true)]
@@ -198,10 +196,7 @@ fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String>
     let fast = warnings.iter().find(is_fast);
     let misfits = ddl::words_of_misfits(recording, clock, &summary.misfits, fast);
     let warnings = warnings.into_iter().map(|warning| ddl::in_frames(clock, warning));
-    warnings
-        .map(|warning| ddl::words_of_warning(&warning))
-        .chain(misfits)
-        .collect()
+    warnings.map(|warning| ddl::words_of_warning(&warning)).chain(misfits).collect()
 }
 
 /// The rate of the rows of a pedestrian, its jitter, and the noise.
@@ -232,12 +227,7 @@ fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Cl
         _ => "unknown: no successive positions".to_owned(),
     };
     let gaps = s.longest_hole.as_ref().map_or_else(String::new, |gap| {
-        format!(
-            ", the longest {:.1} s (pedestrian {}, after {})",
-            gap.seconds,
-            gap.pedestrian,
-            clock.words(gap.after)
-        )
+        format!(", the longest {:.1} s (pedestrian {}, after {})", gap.seconds, gap.pedestrian, clock.words(gap.after))
     });
     let span = if clock.counts_times() {
         format!("{} to {}", clock.words(s.first_frame), clock.words(s.last_frame))

@@ -129,9 +129,7 @@ impl Evaluate {
             && ddl::is_evaluated(&model, &dataset, &request)
         {
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
-            return self
-                .reporting
-                .print(&Report::load(&run.report())?, &self.written(own_run));
+            return self.reporting.print(&Report::load(&run.report())?, &self.written(own_run));
         }
         let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
@@ -156,9 +154,7 @@ impl Evaluate {
 
     fn save_elsewhere(&self, results: impl FnOnce() -> Result<Results, DdlError>) -> anyhow::Result<()> {
         if let Some(folder) = &self.other.out {
-            results()?
-                .save(folder)
-                .with_context(|| format!("cannot write to {}", folder.display()))?;
+            results()?.save(folder).with_context(|| format!("cannot write to {}", folder.display()))?;
         }
         Ok(())
     }
@@ -167,11 +163,7 @@ impl Evaluate {
         match (own_run, &self.other.out) {
             (Some(run), None) => {
                 let (report, run) = (run.report(), run.path());
-                format!(
-                    "all metrics: {}; for a page: ddl report {} --out FOLDER",
-                    report.display(),
-                    run.display()
-                )
+                format!("all metrics: {}; for a page: ddl report {} --out FOLDER", report.display(), run.display())
             }
             _ => self.other.written(),
         }

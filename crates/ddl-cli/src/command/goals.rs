@@ -52,20 +52,13 @@ impl Goals {
         let units = self.units.or_those_of(model.config());
         let dataset = dataset(convention, data, &units)?;
         let evaluation = ddl::evaluate_goals(&model, &dataset, self.measure, self.memory)?;
-        Ok(if self.telling.json {
-            serde_json::to_string_pretty(&evaluation)? + "\n"
-        } else {
-            words(&evaluation)
-        })
+        Ok(if self.telling.json { serde_json::to_string_pretty(&evaluation)? + "\n" } else { words(&evaluation) })
     }
 }
 
 fn words(evaluation: &GoalEvaluation) -> String {
     let mut lines = vec![
-        format!(
-            "fold {}, {} goals per pedestrian, {}",
-            evaluation.fold, evaluation.clusters, evaluation.goals
-        ),
+        format!("fold {}, {} goals per pedestrian, {}", evaluation.fold, evaluation.clusters, evaluation.goals),
         evaluation.windows.clone(),
         format!(
             "{:14} {:>18}  {:>20}  {:>14}",

@@ -25,13 +25,7 @@ pub(crate) struct OccupancyCommand {
     #[arg(long, default_value_t = 0.1, allow_negative_numbers = true)]
     cell: f64,
     /// Time between two grids, seconds; the first is of the moment itself, the last of at most 4.8 s after it
-    #[arg(
-        id = "grids",
-        long = "every",
-        value_name = "SECONDS",
-        default_value_t = 0.4,
-        allow_negative_numbers = true
-    )]
+    #[arg(id = "grids", long = "every", value_name = "SECONDS", default_value_t = 0.4, allow_negative_numbers = true)]
     every: f64,
     /// The area: lowest x and y, largest x and y, metres [default: all paths of the moment, and 1 m around them]
     #[arg(long, value_name = "X,Y,X,Y", value_parser = corners, allow_hyphen_values = true)]
@@ -85,11 +79,7 @@ impl OccupancyCommand {
     }
 
     fn format(&self) -> GridFormat {
-        let default = if self.folder.is_some() {
-            GridFormat::Npy
-        } else {
-            GridFormat::Jsonl
-        };
+        let default = if self.folder.is_some() { GridFormat::Npy } else { GridFormat::Jsonl };
         self.format.unwrap_or(default)
     }
 

@@ -44,9 +44,7 @@ impl Pack {
         };
         if self.telling.json {
             let files = packed.iter();
-            let files: Vec<_> = files
-                .map(|(file, numbers)| json!({"file": file, "weights": numbers}))
-                .collect();
+            let files: Vec<_> = files.map(|(file, numbers)| json!({"file": file, "weights": numbers})).collect();
             return match (&self.benchmark, &files[..]) {
                 (None, [file]) => output::print_json(file),
                 _ => output::print_json(&files),

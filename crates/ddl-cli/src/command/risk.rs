@@ -91,10 +91,7 @@ impl RiskCommand {
             let named = lines.first().and_then(|line| line.scene).map(|_| "scene");
             let nearest = self.nearest.then_some("nearest");
             let columns = named.into_iter().chain(["observed_until", "plan", "within", "risk"]);
-            let columns = columns
-                .chain(nearest)
-                .chain(["pedestrian", "pedestrian_risk"])
-                .map(str::to_owned);
+            let columns = columns.chain(nearest).chain(["pedestrian", "pedestrian_risk"]).map(str::to_owned);
             let until = (1..=HORIZON).map(|t| format!("until_{:.1}", TIME_STEP * t as f64));
             writer.write_record(columns.chain(until))?;
         }

@@ -48,10 +48,7 @@ impl TestWindows {
     fn fold(&self, convention: Convention) -> anyhow::Result<Option<&str>> {
         if self.fold.is_none() && convention != Convention::Own {
             let fold_names: Vec<&str> = convention.fold_names().collect();
-            bail!(
-                "give the fold to test on, --fold NAME with one of {}",
-                fold_names.join(", ")
-            );
+            bail!("give the fold to test on, --fold NAME with one of {}", fold_names.join(", "));
         }
         if let (None, Convention::Star, Some(fold)) = (self.convention, convention, &self.fold) {
             ensure_scene_of_star(fold)?;

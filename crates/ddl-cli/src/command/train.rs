@@ -136,9 +136,7 @@ impl Train {
         let is_own = convention == Convention::Own;
         let part = self.validation_part(&dataset, &fold)?;
         let is_validated = part.share > 0.0 || !part.recordings.is_empty();
-        let patience = self
-            .patience
-            .unwrap_or(if is_own && is_validated { PATIENCE } else { 0 });
+        let patience = self.patience.unwrap_or(if is_own && is_validated { PATIENCE } else { 0 });
         if self.patience.is_some_and(|patience| patience > 0) && !is_validated {
             let validation = part.share;
             bail!(DdlError::Patience { patience, validation });
@@ -185,10 +183,7 @@ impl Train {
 
     fn validation_part(&self, dataset: &Dataset, fold: &str) -> anyhow::Result<ValidationPart> {
         let recordings = &self.validation_recordings;
-        let part = ValidationPart {
-            share: self.validation.unwrap_or(0.0),
-            recordings: recordings.clone(),
-        };
+        let part = ValidationPart { share: self.validation.unwrap_or(0.0), recordings: recordings.clone() };
         let said = self.validation.is_some() || !recordings.is_empty();
         if said || dataset.convention() != Convention::Own {
             return Ok(part);
@@ -196,11 +191,7 @@ impl Train {
         let part = ValidationPart::of_own(&ddl::fold_by_name(dataset, fold)?);
         if !part.recordings.is_empty() {
             let count = part.recordings.len();
-            let whole = if count == 1 {
-                "1 recording is"
-            } else {
-                "some recordings are"
-            };
+            let whole = if count == 1 { "1 recording is" } else { "some recordings are" };
             tell(format_args!(
                 "note: the ends of these recordings hold too few windows for validation: {whole} kept for \
                  validation as a whole (--validation-recordings {})",
@@ -268,10 +259,7 @@ impl Train {
             (None | Some(Convention::Own), None) => Ok((Convention::Own, Fold::NO_HELD_OUT.to_owned())),
             (Some(convention), None) => {
                 let fold_names: Vec<&str> = convention.fold_names().collect();
-                bail!(
-                    "give the fold to leave out, --fold NAME with one of {}",
-                    fold_names.join(", ")
-                )
+                bail!("give the fold to leave out, --fold NAME with one of {}", fold_names.join(", "))
             }
         }
     }
@@ -280,11 +268,7 @@ impl Train {
         let (mut star, mut training) = match self.recipe {
             Recipe::Recommended => (
                 StarConfig::recommended(self.variant),
-                if further {
-                    ddl::fine_tuning_config(self.variant)
-                } else {
-                    TrainingConfig::recommended(self.variant)
-                },
+                if further { ddl::fine_tuning_config(self.variant) } else { TrainingConfig::recommended(self.variant) },
             ),
             Recipe::Published => (StarConfig::published(self.variant), TrainingConfig::published()),
         };
@@ -293,10 +277,7 @@ impl Train {
         set(&mut training.batch_pedestrians, self.batch_pedestrians);
         set(&mut training.learning_rate, self.learning_rate);
         set(&mut training.learning_rate_schedule, self.learning_rate_schedule);
-        set(
-            &mut training.pedestrians_per_epoch,
-            self.pedestrians_per_epoch.map(Some),
-        );
+        set(&mut training.pedestrians_per_epoch, self.pedestrians_per_epoch.map(Some));
         training.seed = self.seed;
         (star, training)
     }
@@ -345,11 +326,8 @@ impl Train {
             // The paper has no network of goals.
             (None, None) if self.recipe == Recipe::Published => Ok(GoalRecipe::retrieved(self.seed)),
             (_, steps) => {
-                let mut recipe = if further {
-                    ddl::fine_tuning_goal_recipe(self.seed)
-                } else {
-                    GoalRecipe::proposed(self.seed)
-                };
+                let mut recipe =
+                    if further { ddl::fine_tuning_goal_recipe(self.seed) } else { GoalRecipe::proposed(self.seed) };
                 if let (Some(proposal), Some(steps)) = (&mut recipe.proposal, steps) {
                     let training = &mut proposal.training;
                     let memory = training.memory.steps as f64 / training.steps as f64;

@@ -93,15 +93,10 @@ impl AdaptiveRegions {
                 pedestrian.take_if(is_other);
             }
         }
-        let share = self
-            .pending
-            .back()
-            .map_or(1.0, |last| ((now - last.frame) as f64 / step as f64).min(1.0));
+        let share = self.pending.back().map_or(1.0, |last| ((now - last.frame) as f64 / step as f64).min(1.0));
         let previous = self.pending.back().map(|last| last.frame);
         let judged = self.pending.iter();
-        let outcomes: Vec<Outcomes> = judged
-            .filter_map(|pending| pending.outcomes(window, previous))
-            .collect();
+        let outcomes: Vec<Outcomes> = judged.filter_map(|pending| pending.outcomes(window, previous)).collect();
         learned.learn(&outcomes, share);
         let ended = self.pending.iter().take_while(|first| first.is_over(now, step));
         let gradients: Vec<_> = ended.flat_map(|ended| ended.gradients(window, previous)).collect();

@@ -108,12 +108,7 @@ impl TrackedQuantiles {
 impl Outcomes {
     /// The weight of the outcomes of one pace, and for each level the move of its shift.
     fn moves(&self, pace: Pace, share: f64) -> (f64, Vec<f64>) {
-        let own = || {
-            self.scores
-                .iter()
-                .filter(|(of, _)| *of == pace)
-                .map(|(_, score)| *score)
-        };
+        let own = || self.scores.iter().filter(|(of, _)| *of == pace).map(|(_, score)| *score);
         let count = own().count();
         let weight = weight_of(count, share);
         let LevelQuantiles { levels, quantiles } = &self.table.0;
@@ -187,11 +182,7 @@ mod tests {
             (0.25, &[3.0, 0.9], [0.972_700_075_075, 4.329_368_775_608]),
         ];
         for (share, scores, expected) in frames {
-            let outcomes = Outcomes {
-                step: 0,
-                table: Arc::clone(tracked.table()),
-                scores: walking(scores),
-            };
+            let outcomes = Outcomes { step: 0, table: Arc::clone(tracked.table()), scores: walking(scores) };
             tracked.learn(&[outcomes], share);
             for (level, expected) in [0.5, 0.9].into_iter().zip(expected) {
                 // Paces that were not seen follow those that were.

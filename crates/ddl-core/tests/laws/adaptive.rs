@@ -22,9 +22,7 @@ impl Draws {
 fn table() -> Arc<RegionTable> {
     let scores = Pace::ALL.map(|pace| -> Vec<[f64; HORIZON]> {
         let score = |n: i32| f64::from(n) / (40.0 + 10.0 * f64::from(pace as u8));
-        (1..100)
-            .map(|n| std::array::from_fn(|t| score(n) * (1.0 + 0.05 * t as f64)))
-            .collect()
+        (1..100).map(|n| std::array::from_fn(|t| score(n) * (1.0 + 0.05 * t as f64))).collect()
     });
     Arc::new(RegionTable::of(&scores.each_ref().map(Vec::as_slice), &LEVELS).unwrap())
 }
@@ -42,25 +40,14 @@ fn moment(at: i64, frame: i64, draws: &mut Draws, regions: &Arc<RegionTable>) ->
         let way = [0.05 + 0.02 * n, 0.2 - 0.03 * n];
         let place = |frame: i64| -> Position {
             let f = frame as f64;
-            [
-                3.0 * n + way[0] * f + 0.2 * f.sin(),
-                way[1] * f + 0.3 * (0.7 * f + n).cos(),
-            ]
+            [3.0 * n + way[0] * f + 0.2 * f.sin(), way[1] * f + 0.3 * (0.7 * f + n).cos()]
         };
         let (before, last) = (place(frame - STEP), place(frame));
-        for off in [
-            [0.01 * u[1], 0.02 * u[2]],
-            [-0.1 - 0.05 * u[3], 0.07],
-            [0.08, 0.1 * u[4]],
-        ] {
+        for off in [[0.01 * u[1], 0.02 * u[2]], [-0.1 - 0.05 * u[3], 0.07], [0.08, 0.1 * u[4]]] {
             let steps = (1..=HORIZON).map(|t| STEP as f64 * t as f64);
             paths.extend(steps.map(|f| [0, 1].map(|axis| last[axis] + (way[axis] + off[axis]) * f)));
         }
-        let slow = if at % 5 == 0 {
-            [0.0, 0.3, 0.7]
-        } else {
-            [0.45, 0.55, 0.0]
-        };
+        let slow = if at % 5 == 0 { [0.0, 0.3, 0.7] } else { [0.45, 0.55, 0.0] };
         weights.extend([[0.7, 0.2, 0.1], slow, [0.15, 0.25, 0.6]][pace]);
         let size = [9.0, 0.4, if at < 120 { 0.0004 } else { 1.2 }][pace];
         scales.extend((0..HORIZON).map(|t| size * (1.0 + 0.1 * t as f64)));
@@ -111,11 +98,7 @@ fn a_place_is_learned_as_by_another_program() {
         let (turned, backwards) = turned(&window, &forecast);
         let adapted = adaptive.adapt(&window, forecast);
         let order: Vec<usize> = (0..window.len()).rev().collect();
-        assert_eq!(
-            other.adapt(&turned, backwards),
-            adapted.of_pedestrians(&order),
-            "the order does not matter"
-        );
+        assert_eq!(other.adapt(&turned, backwards), adapted.of_pedestrians(&order), "the order does not matter");
         let hypotheses = || (0..window.len()).flat_map(|i| (0..3).map(move |k| (i, k)));
         let weights = sum(hypotheses().map(|(i, k)| adapted.weight(i, k)));
         let steps = hypotheses().flat_map(|(i, k)| (0..HORIZON).map(move |t| (i, k, t)));

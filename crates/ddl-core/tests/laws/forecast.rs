@@ -52,18 +52,9 @@ fn layout_is_pedestrian_hypothesis_frame_and_the_heavier_of_two_stays() {
     let verdicts = vec![true, false, true, false];
     let forecast = forecast.with_certified(verdicts).unwrap();
     let first = forecast.of_pedestrians(&[0]);
-    assert_eq!(
-        (first.pedestrians(), first.hypotheses(), first.weight(0, 1).to_bits()),
-        (1, 2, 0.75_f64.to_bits())
-    );
-    assert_eq!(
-        (first.hypothesis(0, 1), first.goal(0, 1)),
-        (forecast.hypothesis(0, 1), Some([0.0, 2.0]))
-    );
-    assert_eq!(
-        (first.certified(0, 0), first.certified(0, 1)),
-        (Some(true), Some(false))
-    );
+    assert_eq!((first.pedestrians(), first.hypotheses(), first.weight(0, 1).to_bits()), (1, 2, 0.75_f64.to_bits()));
+    assert_eq!((first.hypothesis(0, 1), first.goal(0, 1)), (forecast.hypothesis(0, 1), Some([0.0, 2.0])));
+    assert_eq!((first.certified(0, 0), first.certified(0, 1)), (Some(true), Some(false)));
     let single = forecast.single();
     assert_eq!((single.pedestrians(), single.hypotheses()), (2, 1));
     assert_eq!(single.hypothesis(0, 0), &[[0.0, 2.0]; HORIZON]);
@@ -89,10 +80,7 @@ fn numbers_out_of_range_are_refused() {
     let forecast = Forecast::with_equal_weights(3, 2, vec![[1.0, 2.0]; 72]).unwrap();
     assert_eq!(forecast.weight(2, 1).to_bits(), 0.5_f64.to_bits());
     for (value, i) in [(0.0, 14), (-1.0, 30), (f64::NAN, 0), (f64::INFINITY, 35)] {
-        let refused = forecast
-            .clone()
-            .with_spread(spread(|scales| scales[i] = value))
-            .unwrap_err();
+        let refused = forecast.clone().with_spread(spread(|scales| scales[i] = value)).unwrap_err();
         let named = format!("the spread of pedestrian {} is {value}, out of range", i / 12);
         assert_eq!(refused.to_string(), named);
     }
@@ -100,9 +88,7 @@ fn numbers_out_of_range_are_refused() {
     assert_eq!([0.01, 0.0, 1.01, f64::NAN].map(familiar), [true, false, false, false]);
     let sums = |off: f64| Forecast::new(1, 2, vec![[0.0; 2]; 24], vec![0.5, 0.5 + off], None).is_ok();
     assert_eq!([-2e-6, -9e-7, 9e-7, 2e-6].map(sums), [false, true, true, false]);
-    let refused = WeightedGoals::new(vec![[1.0, 2.0]; 6], vec![1.0])
-        .unwrap_err()
-        .to_string();
+    let refused = WeightedGoals::new(vec![[1.0, 2.0]; 6], vec![1.0]).unwrap_err().to_string();
     assert!(refused.starts_with("`weights` must hold 6 entries"), "{refused}");
 }
 
@@ -111,40 +97,19 @@ fn what_is_known_of_a_pedestrian_stays_with_it() {
     let places: Vec<Position> = (0..72).map(|n| [f64::from(n), 100.0 - f64::from(n * n)]).collect();
     let goals: Vec<Position> = (0..6).map(|n| [f64::from(n), -1.0]).collect();
     let forecast = Forecast::new(3, 2, places.clone(), [0.25, 0.75].repeat(3), Some(goals.clone())).unwrap();
-    let forecast = forecast
-        .with_certified(vec![true, true, true, true, true, false])
-        .unwrap();
-    let forecast = forecast
-        .with_spread(spread(|_| {}))
-        .unwrap()
-        .with_familiarity(vec![0.5, 1.0, 0.25])
-        .unwrap();
+    let forecast = forecast.with_certified(vec![true, true, true, true, true, false]).unwrap();
+    let forecast = forecast.with_spread(spread(|_| {})).unwrap().with_familiarity(vec![0.5, 1.0, 0.25]).unwrap();
     let path = from_fn(|t| [-(t as f64), 7.0]);
     let moved = forecast.clone().with_path(1, &path);
     for k in 0..2 {
-        assert_eq!(
-            (moved.hypothesis(1, k), moved.goal(1, k)),
-            (&path[..], Some([-11.0, 7.0]))
-        );
-        assert_eq!(
-            (moved.certified(1, k), moved.certified(0, k)),
-            (Some(false), Some(true))
-        );
+        assert_eq!((moved.hypothesis(1, k), moved.goal(1, k)), (&path[..], Some([-11.0, 7.0])));
+        assert_eq!((moved.certified(1, k), moved.certified(0, k)), (Some(false), Some(true)));
     }
     let two = moved.of_pedestrians(&[2, 0]);
     for (index, i, scale) in [(0, 2, 30.0), (1, 0, 6.0)] {
-        assert_eq!(
-            (two.scale(index, 5), two.scale(index, 11)),
-            (Some(scale), Some(scale + 6.0))
-        );
-        assert_eq!(
-            (two.pace(index), two.familiarity(index)),
-            (Some(Pace::ALL[i]), forecast.familiarity(i))
-        );
-        assert_eq!(
-            (two.goal(index, 1), two.certified(index, 1)),
-            (Some(goals[2 * i + 1]), Some(i == 0))
-        );
+        assert_eq!((two.scale(index, 5), two.scale(index, 11)), (Some(scale), Some(scale + 6.0)));
+        assert_eq!((two.pace(index), two.familiarity(index)), (Some(Pace::ALL[i]), forecast.familiarity(i)));
+        assert_eq!((two.goal(index, 1), two.certified(index, 1)), (Some(goals[2 * i + 1]), Some(i == 0)));
         assert_eq!(two.hypothesis(index, 1), &places[24 * i + 12..][..12]);
     }
     // The radius is s sqrt(2 (q + ln(w / max w))), of q = 0.5; one third has no disc.
@@ -160,8 +125,5 @@ fn what_is_known_of_a_pedestrian_stays_with_it() {
         Window::new("yard", 0, 1, ids, tracks).unwrap()
     };
     let scene = window(&[1, 3]).with_bystanders(Some(window(&[2])));
-    assert_eq!(
-        forecast.clone().without_bystanders(&scene),
-        forecast.of_pedestrians(&[0, 2])
-    );
+    assert_eq!(forecast.clone().without_bystanders(&scene), forecast.of_pedestrians(&[0, 2]));
 }

@@ -53,10 +53,7 @@ fn changing_positions_changes_nothing_else() {
     let window = Window::new("r", 100, 6, ids(4..6), tracks).unwrap();
     let alone = window.filter_pedestrians(|i| i == 1).unwrap();
     assert_eq!(alone.pedestrians(), ids(5..6));
-    assert_eq!(
-        (alone.track(0), window.filter_pedestrians(|_| false)),
-        (window.track(1), None)
-    );
+    assert_eq!((alone.track(0), window.filter_pedestrians(|_| false)), (window.track(1), None));
     let later = |_, step, [x, y]: Position| {
         if step >= OBSERVED { [x + 1.0, y] } else { [x, y] }
     };
@@ -65,10 +62,7 @@ fn changing_positions_changes_nothing_else() {
     assert_eq!(window.reversed().reversed(), window);
     assert_eq!(changed.without_future(), window.without_future());
     assert_ne!(changed.end(0), window.end(0));
-    assert_eq!(
-        (window.frames()[19], window.steps(), window.has_future()),
-        (214, 20, true)
-    );
+    assert_eq!((window.frames()[19], window.steps(), window.has_future()), (214, 20, true));
     let observation = window.without_future();
     assert_eq!((observation.frames().len(), observation.has_future()), (8, false));
     assert!(observation.future(0).is_empty() && observation.end(0).is_none());
@@ -79,15 +73,10 @@ fn changing_positions_changes_nothing_else() {
 fn remembered_tracks_stay_with_their_pedestrian() {
     let tracks = (0..3).map(|i| vec![[f64::from(i), 0.0]; 20]).collect();
     let ids = (1..4).map(PedestrianId).collect();
-    let remembered = |i: usize| RememberedTrack {
-        track: [[i as f64, 1.0]; 20],
-        distance: i as f64,
-    };
+    let remembered = |i: usize| RememberedTrack { track: [[i as f64, 1.0]; 20], distance: i as f64 };
     let window = Window::new("yard", 0, 10, ids, tracks).unwrap();
     assert!((0..3).all(|i| window.remembered(i).is_empty()));
-    let remembering = window
-        .clone()
-        .with_remembered(|i| (0..i).map(|_| remembered(i)).collect());
+    let remembering = window.clone().with_remembered(|i| (0..i).map(|_| remembered(i)).collect());
     assert_eq!(remembering.remembered(2), [remembered(2); 2]);
     assert_eq!(remembering.without_future().remembered(2), [remembered(2); 2]);
     let two = remembering.filter_pedestrians(|i| i != 1).unwrap();
@@ -102,26 +91,15 @@ fn remembered_tracks_stay_with_their_pedestrian() {
 fn bystanders_are_seen_in_the_order_of_ids() {
     let of = |range: std::ops::Range<i64>, steps: usize| {
         let tracks = range.clone().map(|id| vec![[id as f64, 1.0]; steps]).collect();
-        let ages = range.clone().map(|id| ObservationQuality {
-            age: id as f64,
-            ..ObservationQuality::default()
-        });
-        let window = Window::new("yard", 0, 10, ids(range.clone()), tracks)
-            .unwrap()
-            .with_qualities(ages.collect());
-        let remembered = |i| RememberedTrack {
-            track: [[i as f64, 2.0]; 20],
-            distance: 0.0,
-        };
+        let ages = range.clone().map(|id| ObservationQuality { age: id as f64, ..ObservationQuality::default() });
+        let window = Window::new("yard", 0, 10, ids(range.clone()), tracks).unwrap().with_qualities(ages.collect());
+        let remembered = |i| RememberedTrack { track: [[i as f64, 2.0]; 20], distance: 0.0 };
         window.with_remembered(|i| vec![remembered(range.start as usize + i)])
     };
     let window = of(4..6, 20).with_bystanders(Some(of(1..4, 20)));
     assert!(!window.bystanders().unwrap().has_future());
     let seen = window.without_future();
-    assert_eq!(
-        (seen.len(), seen.pedestrians()),
-        (5, &[1, 2, 3, 4, 5].map(PedestrianId)[..])
-    );
+    assert_eq!((seen.len(), seen.pedestrians()), (5, &[1, 2, 3, 4, 5].map(PedestrianId)[..]));
     assert_eq!(window.indices_in_scene(), [3, 4]);
     for (i, id) in [1.0, 2.0, 3.0, 4.0, 5.0].into_iter().enumerate() {
         assert_eq!(
@@ -131,37 +109,22 @@ fn bystanders_are_seen_in_the_order_of_ids() {
     }
     assert_eq!(seen.bystanders(), None);
     assert_eq!(
-        window
-            .filter_pedestrians(|i| i == 1)
-            .unwrap()
-            .without_future()
-            .pedestrians(),
+        window.filter_pedestrians(|i| i == 1).unwrap().without_future().pedestrians(),
         [1, 2, 3, 5].map(PedestrianId)
     );
     assert_eq!((window.len(), window.reversed().bystanders()), (2, None));
     assert_eq!(window.clone().with_bystanders(None).without_future(), of(4..6, 8));
     let later = Window::new("yard", 10, 10, ids(1..2), vec![vec![[0.0; 2]; 8]]).unwrap();
-    assert!(
-        std::panic::catch_unwind(|| window.with_bystanders(Some(later))).is_err(),
-        "other frames"
-    );
+    assert!(std::panic::catch_unwind(|| window.with_bystanders(Some(later))).is_err(), "other frames");
 }
 
 #[test]
 fn what_was_measured_has_no_quality() {
     let window = Window::new("r", 0, 1, ids(0..2), vec![vec![[0.0; 2]; 8]; 2]).unwrap();
     let measured = ObservationQuality::default();
-    assert_eq!(
-        (window.quality(1), measured.is_whole(), measured.deviation_after(4.8)),
-        (measured, true, 0.0)
-    );
+    assert_eq!((window.quality(1), measured.is_whole(), measured.deviation_after(4.8)), (measured, true, 0.0));
     assert_eq!(window.clone().with_qualities(vec![measured; 2]), window);
-    let partial = ObservationQuality {
-        unseen: 1,
-        age: 0.1,
-        deviation: 0.3,
-        velocity_deviation: 0.1,
-    };
+    let partial = ObservationQuality { unseen: 1, age: 0.1, deviation: 0.3, velocity_deviation: 0.1 };
     assert!(!partial.is_whole() && (partial.deviation_after(4.0) - 0.5).abs() < 1e-12);
     // 0.48 m of 4.8 s.
     assert!((partial.uncertainty() - (0.09_f64 + 0.2304).sqrt()).abs() < 1e-12);
@@ -177,8 +140,5 @@ fn places_and_frames_by_hand() {
     assert!(off < 1e-12 && (distance([1.0, 2.0], [4.0, -2.0]) - 5.0).abs() < 1e-12);
     let limits = [1 - FRAME_LIMIT, FRAME_LIMIT - 1, -FRAME_LIMIT, FRAME_LIMIT, i64::MIN];
     assert_eq!(limits.map(is_frame), [true, true, false, false, false]);
-    assert_eq!(
-        [1, 1 << 31, 0, (1 << 31) + 1].map(is_frame_step),
-        [true, true, false, false]
-    );
+    assert_eq!([1, 1 << 31, 0, (1 << 31) + 1].map(is_frame_step), [true, true, false, false]);
 }

@@ -27,14 +27,9 @@ impl ColumnChoice {
     /// # Errors
     /// As those; the message begins with the name of the option.
     pub fn given([columns, keep, unit]: [Option<&str>; 3], is_mapped: bool) -> Result<Self, String> {
-        let mut choice = Self {
-            is_mapped,
-            ..Self::default()
-        };
+        let mut choice = Self { is_mapped, ..Self::default() };
         if let Some(columns) = columns {
-            choice = choice
-                .with_columns(columns)
-                .map_err(|problem| format!("columns {problem}"))?;
+            choice = choice.with_columns(columns).map_err(|problem| format!("columns {problem}"))?;
         }
         if let Some(keep) = keep {
             choice = choice.keeping(keep).map_err(|problem| format!("keep {problem}"))?;
@@ -121,16 +116,10 @@ impl fmt::Display for ColumnChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of_time = self.time_unit.and_then(role_of_unit);
         let word = |role: Role| {
-            let word = role_names()
-                .find(|(other, _)| *other == role)
-                .map_or("", |(_, word)| word);
+            let word = role_names().find(|(other, _)| *other == role).map_or("", |(_, word)| word);
             of_time.as_deref().filter(|_| role == Role::Time).unwrap_or(word)
         };
-        let columns: Vec<String> = self
-            .roles
-            .iter()
-            .map(|(role, name)| format!("{}={name}", word(*role)))
-            .collect();
+        let columns: Vec<String> = self.roles.iter().map(|(role, name)| format!("{}={name}", word(*role))).collect();
         f.write_str(&columns.join(","))
     }
 }

@@ -27,14 +27,8 @@ pub(super) enum Role {
 
 /// The roles with their names, in small letters without blanks and signs. Users choose a role by the first one.
 const NAMES: [(Role, &str); 15] = [
-    (
-        Role::Frame,
-        "frame bild frames frameid frameidx frameindex framenumber frameno framenum framenr fr",
-    ),
-    (
-        Role::Time,
-        "time zeit t ts timestamp stamp headerstamp seconds milliseconds microseconds nanoseconds datetime",
-    ),
+    (Role::Frame, "frame bild frames frameid frameidx frameindex framenumber frameno framenum framenr fr"),
+    (Role::Time, "time zeit t ts timestamp stamp headerstamp seconds milliseconds microseconds nanoseconds datetime"),
     (
         Role::Pedestrian,
         "pedestrian pedestrianid ped pedid persid id agent agentid track trackid trackerid tid person personid \
@@ -171,9 +165,7 @@ pub(super) fn role_of_unit(unit: TimeUnit) -> Option<String> {
 pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
     let words = words(name);
     let last = words.last().map_or("", String::as_str);
-    let of_time = [words.concat().as_str(), last]
-        .iter()
-        .find_map(|unit| unit_of(&TIME_UNITS, unit));
+    let of_time = [words.concat().as_str(), last].iter().find_map(|unit| unit_of(&TIME_UNITS, unit));
     Named {
         index,
         role,
@@ -215,9 +207,7 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
 /// The column of a part of a second beside this one of whole seconds, as in stamps of ROS: its first words are the
 /// same. The words of the names are written together.
 pub(super) fn rest_beside(names: &[String], seconds: usize) -> Option<Rest> {
-    let stem = names[seconds]
-        .strip_suffix("secs")
-        .or(names[seconds].strip_suffix("sec"))?;
+    let stem = names[seconds].strip_suffix("secs").or(names[seconds].strip_suffix("sec"))?;
     names.iter().enumerate().find_map(|(index, name)| {
         let (unit, a_second) = unit_of(&RESTS, name.strip_prefix(stem)?)?;
         Some((index, unit, a_second))

@@ -40,10 +40,7 @@ pub(super) fn rate_of(comment: &str) -> Option<f64> {
 /// A word that is a rate, as `25`, `25fps`, `30000/1001`.
 fn rate(word: &str) -> Option<f64> {
     let number = word.trim_matches(|c: char| ",;.()".contains(c));
-    let number = number
-        .strip_suffix("fps")
-        .or(number.strip_suffix("hz"))
-        .unwrap_or(number);
+    let number = number.strip_suffix("fps").or(number.strip_suffix("hz")).unwrap_or(number);
     let (above, below) = number.split_once('/').unwrap_or((number, "1"));
     let rate = above.parse::<f64>().ok()? / below.parse::<f64>().ok()?;
     (rate.is_finite() && rate > 0.0).then_some(rate)

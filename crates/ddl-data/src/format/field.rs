@@ -22,11 +22,7 @@ const DATE: &str = "a date with a time such as 2026-05-31T12:00:00.4Z";
 pub(super) fn trimmed(field: &str) -> &str {
     let is_letter = |byte: Option<&u8>| byte.is_none_or(u8::is_ascii_graphic);
     let bytes = field.as_bytes();
-    if is_letter(bytes.first()) && is_letter(bytes.last()) {
-        field
-    } else {
-        field.trim()
-    }
+    if is_letter(bytes.first()) && is_letter(bytes.last()) { field } else { field.trim() }
 }
 
 /// A frame or pedestrian number. Files write them as `12`, `12.0` or `1.2e1`.
@@ -71,10 +67,7 @@ fn time(text: &str, name: &str, unit: TimeUnit) -> Result<i64, String> {
             _ => "write seconds",
         };
         let limit = "is not within 285 years of 1970; if it counts milliseconds";
-        return Err(format!(
-            "time {} {limit}, {finer}; divide ticks of 100 ns",
-            quoted(text)
-        ));
+        return Err(format!("time {} {limit}, {finer}; divide ticks of 100 ns", quoted(text)));
     }
     Ok(stamp as i64)
 }
@@ -103,11 +96,7 @@ pub(super) fn unit_of(text: &str) -> TimeUnit {
 
 /// Whether a text is a number with a fraction, which is a time and no frame number.
 pub(super) fn has_fraction(text: &str) -> bool {
-    text.contains(['.', 'e', 'E'])
-        && text
-            .trim()
-            .parse::<f64>()
-            .is_ok_and(|number| number.fract().abs() > 0.0)
+    text.contains(['.', 'e', 'E']) && text.trim().parse::<f64>().is_ok_and(|number| number.fract().abs() > 0.0)
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -151,9 +140,7 @@ pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, Stri
 pub(super) fn word(text: &str, name: &str) -> Result<PedestrianField, String> {
     if text.len() > LONGEST_WORD {
         let (found, length) = (quoted(text), text.len());
-        return Err(format!(
-            "{name} has {length} bytes, at most {LONGEST_WORD} are read, found {found:?}"
-        ));
+        return Err(format!("{name} has {length} bytes, at most {LONGEST_WORD} are read, found {found:?}"));
     }
     if !text.contains(char::is_control) {
         return Ok(PedestrianField::Word(text.into()));
@@ -164,13 +151,7 @@ pub(super) fn word(text: &str, name: &str) -> Result<PedestrianField, String> {
 /// Whether a text is a fraction, NaN or infinite. `12e4567` is not: it is too large for a number and counts as a word.
 fn is_fraction_or_infinite(text: &str) -> bool {
     let digit = text.starts_with(|c: char| c.is_ascii_digit());
-    text.parse::<f64>().is_ok_and(|number| {
-        if number.is_finite() {
-            number.fract() != 0.0
-        } else {
-            !digit
-        }
-    })
+    text.parse::<f64>().is_ok_and(|number| if number.is_finite() { number.fract() != 0.0 } else { !digit })
 }
 
 /// A coordinate in metres, written in units of which `per_metre` make a metre.

@@ -92,15 +92,9 @@ impl Header {
             let example = if count == 4 { ": frame,pedestrian,x,y" } else { "" };
             return Err((None, format!("{RULE}: {detail}{example}")));
         }
-        let mut roles = Roles {
-            names,
-            found: Vec::new(),
-            unknown: Vec::new(),
-        };
+        let mut roles = Roles { names, found: Vec::new(), unknown: Vec::new() };
         let plain: Vec<String> = names.iter().map(|name| words(name).concat()).collect();
-        let has_no_time = !names
-            .iter()
-            .any(|name| named(0, name).is_some_and(|named| named.role == Role::Time));
+        let has_no_time = !names.iter().any(|name| named(0, name).is_some_and(|named| named.role == Role::Time));
         for (index, name) in names.iter().enumerate() {
             let chosen = choice.roles.iter().find(|(_, chosen)| is_called(names, name, chosen));
             // x and y that are given stand for a box as well, and a box for x and y.
@@ -123,9 +117,7 @@ impl Header {
             header.rest = Some(rest);
             header.unread.retain(|&index| index != rest.0);
             let [first, rest] = [header.frame, rest.0].map(|index| quoted(names[index]));
-            header
-                .remarks
-                .push(format!("the times are {first} and {rest} together"));
+            header.remarks.push(format!("the times are {first} and {rest} together"));
         }
         if choice.time_unit.is_some() {
             header.time = TimeColumn::Known(choice.time_unit);
@@ -141,8 +133,7 @@ impl Header {
     pub(super) fn name_words_first(&mut self, fields: &[Cow<'_, str>], names: &[String]) {
         if self.unread.len() > NAMED {
             let is_number = |index: &usize| fields[*index].parse::<f64>().is_ok();
-            self.unread
-                .sort_by_key(|index| is_number(index) && !is_one_of(PARTS, &words(&names[*index]).concat()));
+            self.unread.sort_by_key(|index| is_number(index) && !is_one_of(PARTS, &words(&names[*index]).concat()));
         }
     }
 
@@ -153,21 +144,15 @@ impl Header {
     pub(super) fn of_layout(layout: &Layout, choice: &ColumnChoice, remarks: Vec<String>) -> Result<Self, String> {
         let index = |name: &String| {
             let mut names = layout.names.split(' ');
-            names
-                .position(|column| column.eq_ignore_ascii_case(name))
-                .ok_or_else(|| {
-                    let names = layout.names.replace(' ', ", ");
-                    format!("there is no column {:?} among {names}", quoted(name))
-                })
+            names.position(|column| column.eq_ignore_ascii_case(name)).ok_or_else(|| {
+                let names = layout.names.replace(' ', ", ");
+                format!("there is no column {:?} among {names}", quoted(name))
+            })
         };
         let is_timed = layout.names.starts_with("time ");
         let has_unit = layout.note.is_some() && layout.per_metre.is_some();
         Ok(Self {
-            time: if is_timed {
-                TimeColumn::Known(Some(TimeUnit::Seconds))
-            } else {
-                TimeColumn::Frame
-            },
+            time: if is_timed { TimeColumn::Known(Some(TimeUnit::Seconds)) } else { TimeColumn::Frame },
             frame: layout.frame,
             rest: None,
             pedestrian: layout.pedestrian,
@@ -268,9 +253,7 @@ impl Roles<'_> {
         let mut remarks = Vec::new();
         if let Some(frame) = self.of(Role::Frame).filter(|frame| frame.index != time.index) {
             let [when, other] = [time, frame].map(|named| quoted(self.names[named.index]));
-            remarks.push(format!(
-                "the times are those of the column {when}; --columns frame={other} takes the frames"
-            ));
+            remarks.push(format!("the times are those of the column {when}; --columns frame={other} takes the frames"));
         }
         let size = self.index(Role::Width).zip(self.index(Role::Height));
         if let Some(x) = self.index(Role::X).filter(|_| is_point && is_assumed && size.is_some()) {
@@ -286,10 +269,7 @@ impl Roles<'_> {
         let is_x = |name: &str| named(0, name).is_some_and(|named| named.role == Role::X);
         let is_height = |name: &&&str| !is_x(name) && is_x(&name.to_ascii_lowercase().replace('z', "x"));
         if let Some(z) = self.names.iter().find(is_height).filter(|_| is_point) {
-            remarks.push(format!(
-                "{} is taken for the height; if y is, give --columns y={0}",
-                quoted(z)
-            ));
+            remarks.push(format!("{} is taken for the height; if y is, give --columns y={0}", quoted(z)));
         }
         if self.names.iter().any(|name| name.eq_ignore_ascii_case("trackLifetime")) {
             remarks
@@ -380,9 +360,7 @@ impl Roles<'_> {
             let names = self.names.iter().map(|name| words(name).concat());
             let numbered = names.filter(|name| name.contains(|c: char| c.is_ascii_digit()));
             let letters = numbered.map(|name| name.replace(|c: char| c.is_ascii_digit(), ""));
-            letters
-                .filter(|name| name.starts_with(axis) || name.ends_with(axis))
-                .count()
+            letters.filter(|name| name.starts_with(axis) || name.ends_with(axis)).count()
         };
         // Of two pedestrians the names may be those of a box.
         let is_wide = of_axis('x') > if self.place().is_some() { 2 } else { 1 };
@@ -406,10 +384,7 @@ impl Roles<'_> {
         };
         (!are_alike).then(|| {
             let [of_x, of_y] = [x, y].map(|named| quoted(self.names[named.index]));
-            (
-                Some(y.index),
-                format!("the columns {of_x:?} and {of_y:?} have different units; --unit sets one for both"),
-            )
+            (Some(y.index), format!("the columns {of_x:?} and {of_y:?} have different units; --unit sets one for both"))
         })
     }
 
@@ -432,10 +407,7 @@ impl Roles<'_> {
             let hint = "; rename the column that holds it, or name it";
             rename = format!("{hint} (--columns {role}=NAME): unknown are {}", first_of(&unknown));
         }
-        Some((
-            self.unknown.first().copied(),
-            format!("still missing: {}{rename}", missing.join(", ")),
-        ))
+        Some((self.unknown.first().copied(), format!("still missing: {}{rename}", missing.join(", "))))
     }
 }
 

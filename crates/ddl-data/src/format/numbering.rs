@@ -17,12 +17,7 @@ pub struct Numbering {
 impl Numbering {
     /// Remembers at most `most` words; a forgotten word gets a new number.
     pub fn remembering(most: usize) -> Self {
-        Self {
-            numbers: HashMap::new(),
-            words: VecDeque::new(),
-            forgotten: 0,
-            most,
-        }
+        Self { numbers: HashMap::new(), words: VecDeque::new(), forgotten: 0, most }
     }
 
     /// The number of a word, and the shared copy of the word.

@@ -55,11 +55,7 @@ pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
     };
     let unlike = |a: f64, b: f64, ratio: f64| a.max(b) > ratio * a.min(b);
     if unlike(first.step, second.step, MUCH_LONGER) {
-        return if first.step < second.step {
-            Order::FrameFirst
-        } else {
-            Order::PedestrianFirst
-        };
+        return if first.step < second.step { Order::FrameFirst } else { Order::PedestrianFirst };
     }
     let votes = [
         (fractions[0] != fractions[1]).then_some(fractions[0]),
@@ -101,11 +97,7 @@ fn tracks(rows: &[([f64; 2], Position)], frame: usize) -> Option<Tracks> {
     }
     let middle = steps.len() / 2;
     let (_, &mut step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(Tracks {
-        step,
-        rows: rows.len() as f64 / pedestrians as f64,
-        unit,
-    })
+    Some(Tracks { step, rows: rows.len() as f64 / pedestrians as f64, unit })
 }
 
 fn greatest_divisor(a: u64, b: u64) -> u64 {

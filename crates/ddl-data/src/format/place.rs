@@ -19,10 +19,7 @@ impl FilePlace {
 
     pub(super) fn field(line: usize, field: usize) -> Self {
         let field = u32::try_from(field).unwrap_or(u32::MAX);
-        Self {
-            field: NonZeroU32::new(field),
-            ..Self::line(line)
-        }
+        Self { field: NonZeroU32::new(field), ..Self::line(line) }
     }
 
     pub(super) fn line_number(self) -> usize {

@@ -44,10 +44,7 @@ impl Place {
         let [left, top, third, fourth] = [left?, top?, third?, fourth?];
         let (size, position) = match self {
             Self::Foot(_) => ([third, fourth], [left + 0.5 * third, top + fourth]),
-            Self::Centre(_) => (
-                [third - left, fourth - top],
-                [0.5 * (left + third), 0.5 * (top + fourth)],
-            ),
+            Self::Centre(_) => ([third - left, fourth - top], [0.5 * (left + third), 0.5 * (top + fourth)]),
             _ => ([third - left, fourth - top], [0.5 * (left + third), fourth]),
         };
         let is_backward = size.map(|side| side < -ROUNDING);

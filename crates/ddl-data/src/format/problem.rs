@@ -14,10 +14,8 @@ pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String 
 }
 
 pub(super) fn duplicate(pedestrian: impl Display, (frame, unit): (i64, Option<TimeUnit>), first_line: usize) -> String {
-    let coarse = unit.map_or(
-        "",
-        |_| ", or take frame numbers if the times are too coarse (of a table: --columns frame=NAME)",
-    );
+    let coarse =
+        unit.map_or("", |_| ", or take frame numbers if the times are too coarse (of a table: --columns frame=NAME)");
     let when = when(frame, unit);
     format!("pedestrian {pedestrian} is in {when} already (line {first_line}); keep one row{coarse}")
 }

@@ -130,11 +130,7 @@ impl<'a> Lines<'a> {
     fn are_star(self) -> bool {
         let counts = self.filled().take(5).map(|line| {
             let fields = fields(Separator::Comma, line);
-            if fields.first().is_some_and(|field| is_number(field)) {
-                fields.len()
-            } else {
-                0
-            }
+            if fields.first().is_some_and(|field| is_number(field)) { fields.len() } else { 0 }
         });
         let counts: Vec<usize> = counts.collect();
         counts.len() == 4 && counts.iter().all(|count| ![0, 4].contains(count))
@@ -144,10 +140,7 @@ impl<'a> Lines<'a> {
     fn numbers<const N: usize>(self, separator: Separator) -> impl Iterator<Item = [f64; N]> {
         self.filled().filter_map(move |line| {
             let fields = separator.fields(line, 1).ok()?;
-            let numbers = fields
-                .iter()
-                .take(N)
-                .map(|field| separator.with_point(field).parse().ok());
+            let numbers = fields.iter().take(N).map(|field| separator.with_point(field).parse().ok());
             numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
         })
     }

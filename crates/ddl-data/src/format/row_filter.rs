@@ -55,9 +55,7 @@ impl RowFilter {
         Self {
             class: class.filter(|&(index, _)| not_kept(index)),
             keep: keep.map(|(index, (_, value))| (index, names[index].clone(), value.clone())),
-            marks: marks
-                .map(|&(index, left_out)| (index, left_out, names[index].clone()))
-                .collect(),
+            marks: marks.map(|&(index, left_out)| (index, left_out, names[index].clone())).collect(),
             ..Self::default()
         }
     }
@@ -90,11 +88,7 @@ impl RowFilter {
                 (*index, format!("{wanted}; --keep {name}=VALUE chooses rows by it"))
             })?;
             if is_marked == *left_out {
-                let why = if is_marked {
-                    "marked lost".to_owned()
-                } else {
-                    format!("with {name} 0")
-                };
+                let why = if is_marked { "marked lost".to_owned() } else { format!("with {name} 0") };
                 return Ok(Some(why));
             }
         }
@@ -105,11 +99,7 @@ impl RowFilter {
         if let Some((index, name, value)) = &self.keep
             && !are_alike(&fields[*index], value)
         {
-            return Some(format!(
-                "with {} {}",
-                field::quoted(name),
-                field::quoted(&fields[*index])
-            ));
+            return Some(format!("with {} {}", field::quoted(name), field::quoted(&fields[*index])));
         }
         if let Some((index, kept)) = self.class {
             let class = &*fields[index];
@@ -156,9 +146,7 @@ impl RowFilter {
             let reasons: Vec<String> = self.left_out.keys().cloned().collect();
             format!("rows are left out: {}", first_of(&reasons))
         });
-        let classes = (before[1] < classes && before[1] < MOST_TOLD)
-            .then(|| self.classes_read())
-            .flatten();
+        let classes = (before[1] < classes && before[1] < MOST_TOLD).then(|| self.classes_read()).flatten();
         rows.into_iter().chain(classes).collect()
     }
 }

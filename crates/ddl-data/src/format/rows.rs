@@ -31,14 +31,7 @@ pub(super) struct TrackRow {
 impl TrackRow {
     /// A row with numbers alone.
     pub(super) fn numbered(frame: i64, pedestrian: i64, position: Position, place: FilePlace) -> Self {
-        Self {
-            scene: None,
-            frame,
-            unit: None,
-            pedestrian: PedestrianField::Number(pedestrian, None),
-            position,
-            place,
-        }
+        Self { scene: None, frame, unit: None, pedestrian: PedestrianField::Number(pedestrian, None), position, place }
     }
 }
 
@@ -54,10 +47,7 @@ pub(super) fn into_recording(
     let (restarts, unit) = (restarts(&rows), rows.first().and_then(|row| row.unit));
     let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.in_file(origin))?;
     let recording = Recording::in_usual_step(origin, observations);
-    let mut recording = recording.map_err(|source| DataError::Recording {
-        name: origin.to_owned(),
-        source,
-    })?;
+    let mut recording = recording.map_err(|source| DataError::Recording { name: origin.to_owned(), source })?;
     recording.restarts = restarts;
     Ok(recording.with_names(names).with_time_unit(unit))
 }
@@ -92,9 +82,7 @@ fn observations(
 /// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a
 /// word, the order of first appearance.
 fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
-    let words = rows
-        .iter()
-        .any(|row| matches!(row.pedestrian, PedestrianField::Word(_)));
+    let words = rows.iter().any(|row| matches!(row.pedestrian, PedestrianField::Word(_)));
     // In order of time, as a stream gives them: later rows change no number.
     let mut rows = rows;
     rows.sort_by_key(|row| row.frame);
@@ -126,9 +114,7 @@ fn restarts(rows: &[TrackRow]) -> usize {
     let parts: Vec<&[TrackRow]> = rows.chunk_by(|row, next| row.frame - next.frame <= disorder).collect();
     // Pedestrians take turns, instead of following each other.
     let is_crowd = |part: &&[TrackRow]| {
-        let changes = part
-            .array_windows()
-            .filter(|[before, row]| before.pedestrian != row.pedestrian);
+        let changes = part.array_windows().filter(|[before, row]| before.pedestrian != row.pedestrian);
         let pedestrians: BTreeSet<&PedestrianField> = part.iter().map(|row| &row.pedestrian).collect();
         changes.count() >= pedestrians.len()
     };
@@ -152,10 +138,7 @@ fn restarts_of_tracks(rows: &[TrackRow], disorder: i64) -> usize {
             |[part, next]: &[&[i64]; 2]| next.last() < part.first() && part[part.len() - 1] - next[0] > disorder;
         parts.array_windows().all(begins_again).then_some(parts.len() - 1)
     });
-    restarts
-        .reduce(|most, count| Some(most?.max(count?)))
-        .flatten()
-        .unwrap_or(0)
+    restarts.reduce(|most, count| Some(most?.max(count?))).flatten().unwrap_or(0)
 }
 
 /// Sorts the rows by frame and pedestrian, and finds the first of the file that repeats both of another.

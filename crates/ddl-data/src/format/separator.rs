@@ -58,11 +58,7 @@ impl Separator {
 
     /// A number with a decimal point: where no comma stands between fields, it is a decimal comma.
     pub(super) fn with_point(self, number: &str) -> Cow<'_, str> {
-        if self != Self::Comma && number.contains(',') {
-            number.replacen(',', ".", 1).into()
-        } else {
-            number.into()
-        }
+        if self != Self::Comma && number.contains(',') { number.replacen(',', ".", 1).into() } else { number.into() }
     }
 
     /// The fields of a line, without blanks around them and quotes.

@@ -113,12 +113,7 @@ struct SceneProgress {
 
 impl SceneProgress {
     fn unseen() -> Self {
-        Self {
-            current: None,
-            last: None,
-            has_words: false,
-            heard: Instant::now(),
-        }
+        Self { current: None, last: None, has_words: false, heard: Instant::now() }
     }
 }
 
@@ -346,10 +341,9 @@ impl<R: BufRead> FrameReader<R> {
         if self.unfinished == limit {
             let frames = match name {
                 None => when(seen.frame, seen.unit),
-                Some(scene) => format!(
-                    "the incomplete frames, one of them {} of scene {scene}",
-                    when(seen.frame, seen.unit)
-                ),
+                Some(scene) => {
+                    format!("the incomplete frames, one of them {} of scene {scene}", when(seen.frame, seen.unit))
+                }
             };
             let problem = format!("more than {limit} pedestrians in {frames}; does the frame number increase?");
             return Err(self.wrong(problem));
@@ -381,13 +375,11 @@ impl<R: BufRead> FrameReader<R> {
         if let Some(last) = reached.or(scene.last)
             && (frame < last || (reached.is_none() && frame == last))
         {
-            let of_scene = name
-                .as_ref()
-                .map_or_else(String::new, |scene| format!(" of scene {scene}"));
+            let of_scene = name.as_ref().map_or_else(String::new, |scene| format!(" of scene {scene}"));
             let (now, last) = (when(frame, unit), when(last, unit));
-            return Err(self.wrong(format!(
-                "{now}{of_scene} comes after {last}; a stream of tracks must be in order of time"
-            )));
+            return Err(
+                self.wrong(format!("{now}{of_scene} comes after {last}; a stream of tracks must be in order of time"))
+            );
         }
         Ok(if reached == Some(frame) { None } else { self.whole(name) })
     }
@@ -403,14 +395,9 @@ impl<R: BufRead> FrameReader<R> {
             return Ok(());
         }
         let first_line = first.line;
-        let here = if is_named {
-            "a scene is named here, but not"
-        } else {
-            "track.scene is missing here, but present"
-        };
-        Err(self.wrong(format!(
-            "{here} on line {first_line}; name the scene of every observation or omit it everywhere"
-        )))
+        let here = if is_named { "a scene is named here, but not" } else { "track.scene is missing here, but present" };
+        Err(self
+            .wrong(format!("{here} on line {first_line}; name the scene of every observation or omit it everywhere")))
     }
 
     /// Makes room for a new scene, and forgets idle scenes.
@@ -475,10 +462,7 @@ impl<R: BufRead> FrameReader<R> {
         let growing = scene.current.take()?;
         scene.last = Some(growing.frame.number);
         self.unfinished -= growing.frame.pedestrians.len();
-        Some(Frame {
-            names: PedestrianNames::new(growing.words),
-            ..growing.frame
-        })
+        Some(Frame { names: PedestrianNames::new(growing.words), ..growing.frame })
     }
 
     fn wrong(&self, problem: impl Into<String>) -> FormatError {

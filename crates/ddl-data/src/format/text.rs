@@ -35,12 +35,7 @@ impl TextFile {
         notes: impl IntoIterator<Item = String>,
         rate: Option<f64>,
     ) -> Self {
-        Self {
-            rows,
-            notes: notes.into_iter().collect(),
-            rate,
-            columns: None,
-        }
+        Self { rows, notes: notes.into_iter().collect(), rate, columns: None }
     }
 
     /// What else may be done about a pedestrian that is twice in one frame, in these lines.

@@ -91,10 +91,7 @@ impl TrackColumns {
                 let problem = format!("the comment above names {} columns, this row has {count}", names.len());
                 return Err(FilePlace::line(line).wrong(problem));
             }
-            return Ok((
-                Self::named(header, names, Separator::of_numbers(first), None, choice),
-                false,
-            ));
+            return Ok((Self::named(header, names, Separator::of_numbers(first), None, choice), false));
         }
         let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
         let header = Header::of(&names, choice).map_err(|(field, problem)| {
@@ -219,9 +216,7 @@ impl TrackColumns {
         let (mut read, mut fields) = (Vec::with_capacity(most), Vec::new());
         for (line, text) in rows {
             self.separator.split(text, line, &mut fields)?;
-            let time = fields
-                .get(self.header.frame)
-                .filter(|_| self.header.time == TimeColumn::Frame);
+            let time = fields.get(self.header.frame).filter(|_| self.header.time == TimeColumn::Frame);
             let has_fraction = |time: &&Cow<'_, str>| field::has_fraction(&self.separator.with_point(time));
             if let Some(time) = time.filter(|time| has_fraction(time) && !self.is_comment(text, &fields)) {
                 self.look_at(Some(time));

@@ -203,14 +203,7 @@ fn row(text: &str, place: FilePlace, others: &mut OtherLines) -> Result<Option<T
             return Err(format!("track.scene must be a text, such as \"hall\", found {found}"));
         }
     };
-    Ok(Some(TrackRow {
-        scene,
-        frame,
-        unit,
-        pedestrian,
-        position: [x, y],
-        place,
-    }))
+    Ok(Some(TrackRow { scene, frame, unit, pedestrian, position: [x, y], place }))
 }
 
 /// A value as in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
@@ -223,9 +216,9 @@ fn pedestrian(value: Option<Value>) -> Result<PedestrianField, String> {
     match value {
         // A quoted pedestrian is a word, even if it holds only digits.
         Some(Value::String(word)) if !word.trim().is_empty() => field::word(word.trim(), "track.p"),
-        Some(Value::Number(number)) if number.is_f64() && number.as_f64().is_some_and(is_large) => Err(format!(
-            "track.p {number} has lost digits, as a number of JSON; write it as a text"
-        )),
+        Some(Value::Number(number)) if number.is_f64() && number.as_f64().is_some_and(is_large) => {
+            Err(format!("track.p {number} has lost digits, as a number of JSON; write it as a text"))
+        }
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p"),
         other => {
             let number = field::integer(&written(other, "track.p")?, "track.p")?;
@@ -243,9 +236,7 @@ fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str
         return Err(format!("{name} must be a JSON object, found {}", field::quoted(text)));
     }
     let fields = serde_json::from_str(text);
-    fields
-        .map(Some)
-        .map_err(|error| not_one_object(&format!("{name}: {error}")))
+    fields.map(Some).map_err(|error| not_one_object(&format!("{name}: {error}")))
 }
 
 fn not_one_object(detail: &str) -> String {

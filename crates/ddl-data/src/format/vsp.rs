@@ -59,10 +59,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
         points.push(ControlPoint { frame, position, line });
     }
     if let Some(promised) = promised.filter(|promised| *promised != splines.len() as i64) {
-        let problem = format!(
-            "the file has {} of its {promised} splines; is it cut off?",
-            splines.len()
-        );
+        let problem = format!("the file has {} of its {promised} splines; is it cut off?", splines.len());
         return Err(FilePlace::line(1).wrong(problem));
     }
     let (rows, lost) = rows_of(&splines)?;

@@ -59,11 +59,8 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
             });
         }
         _ => {
-            let problem = format!(
-                "the format {format} is only read; use the format {} or {}",
-                Format::Table,
-                Format::TrajNet
-            );
+            let problem =
+                format!("the format {format} is only read; use the format {} or {}", Format::Table, Format::TrajNet);
             return Err(DataError::Own { problem });
         }
     }
@@ -74,10 +71,7 @@ fn refuse_what_it_lacks(recording: &Recording, format: Format) -> Result<(), Dat
     if matches!(format, Format::Table | Format::TrajNet) {
         return Ok(());
     }
-    let mut names = recording
-        .observations()
-        .iter()
-        .map(|seen| recording.names().of(seen.pedestrian));
+    let mut names = recording.observations().iter().map(|seen| recording.names().of(seen.pedestrian));
     let problem = if let Some(word) = names.find(|name| matches!(name, PedestrianName::Word(_))) {
         format!("the format {format} names pedestrians by numbers, but {word} is a word")
     } else if recording.time_unit().is_some() {
@@ -124,9 +118,5 @@ fn star_csv(observations: &[Observation]) -> String {
 
 fn csv_field(name: &PedestrianName) -> String {
     let text = name.to_string();
-    if text.contains(['"', ',', '\n', '\r']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text
-    }
+    if text.contains(['"', ',', '\n', '\r']) { format!("\"{}\"", text.replace('"', "\"\"")) } else { text }
 }

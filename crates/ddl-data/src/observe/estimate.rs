@@ -72,10 +72,7 @@ impl ObservedTrack {
     /// The smoothed motion at ascending times.
     fn motions_at(&self, times: &[f64; OBSERVED], tick_time: f64, walk: Walk) -> [Motion; OBSERVED] {
         let first = self.rows[0];
-        let later = times
-            .iter()
-            .filter(|time| **time > first.time)
-            .map(|&time| (time, None));
+        let later = times.iter().filter(|time| **time > first.time).map(|&time| (time, None));
         let rows = self.rows.iter().map(|row| (row.time, Some(row.position)));
         let mut moments: Vec<(f64, Option<Position>)> = rows.chain(later).collect();
         // A row before a step at the same time.
@@ -109,7 +106,5 @@ impl ObservedTrack {
 fn clean_motion(agility: f64) -> Motion {
     let walk = Walk { noise: USUAL, agility };
     let first = Motion::first_seen([0.0; 2], walk);
-    (1..OBSERVED).fold(first, |motion, _| {
-        motion.expected_after(TIME_STEP).corrected([0.0; 2], walk.noise)
-    })
+    (1..OBSERVED).fold(first, |motion, _| motion.expected_after(TIME_STEP).corrected([0.0; 2], walk.noise))
 }

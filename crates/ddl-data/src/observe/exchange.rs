@@ -25,12 +25,7 @@ struct Surprise {
 pub(crate) fn exchanged(rows: impl Iterator<Item = (PedestrianId, Position, Expectation)>) -> Vec<(PedestrianId, f64)> {
     let surprises = rows.filter_map(|(id, position, expected)| {
         let off = distance(position, expected.position);
-        (off > expected.reach).then_some(Surprise {
-            id,
-            position,
-            expected,
-            off,
-        })
+        (off > expected.reach).then_some(Surprise { id, position, expected, off })
     });
     let surprises: Vec<Surprise> = surprises.take(MOST + 1).collect();
     if surprises.len() > MOST {

@@ -89,17 +89,11 @@ impl Motion {
         let inverse = [expected.velocity_variance, -expected.covariance, expected.variance].map(|e| e / determinant);
         let rows = [
             [self.variance + seconds * self.covariance, self.covariance],
-            [
-                self.covariance + seconds * self.velocity_variance,
-                self.velocity_variance,
-            ],
+            [self.covariance + seconds * self.velocity_variance, self.velocity_variance],
         ];
         let gain = rows.map(|[p, v]| [p * inverse[0] + v * inverse[1], p * inverse[1] + v * inverse[2]]);
         let offset = |axis: usize| {
-            [
-                later.position[axis] - expected.position[axis],
-                later.velocity[axis] - expected.velocity[axis],
-            ]
+            [later.position[axis] - expected.position[axis], later.velocity[axis] - expected.velocity[axis]]
         };
         let moved = |row: [f64; 2], axis: usize| row[0] * offset(axis)[0] + row[1] * offset(axis)[1];
         Self {

@@ -55,10 +55,7 @@ pub(super) struct NoiseLevel(usize);
 
 impl NoiseLevel {
     pub(super) fn walk(self) -> Walk {
-        Walk {
-            noise: NOISE[self.0 % NOISE.len()],
-            agility: AGILITY[self.0 / NOISE.len()],
-        }
+        Walk { noise: NOISE[self.0 % NOISE.len()], agility: AGILITY[self.0 / NOISE.len()] }
     }
 
     /// Whether positions are taken as they are.
@@ -73,10 +70,7 @@ impl NoiseLevel {
 
 impl Default for RecordingNoise {
     fn default() -> Self {
-        Self {
-            evidence: [0.0; LEVELS],
-            rows: 0.0,
-        }
+        Self { evidence: [0.0; LEVELS], rows: 0.0 }
     }
 }
 
@@ -105,9 +99,7 @@ impl TrackNoise {
     /// The likeliest level, by this track and the recording it is in.
     pub(super) fn level(&self, recording: &RecordingNoise) -> NoiseLevel {
         let share = (OTHERS / recording.rows).min(1.0);
-        likeliest(&std::array::from_fn(|level| {
-            self.evidence[level] + share * recording.evidence[level]
-        }))
+        likeliest(&std::array::from_fn(|level| self.evidence[level] + share * recording.evidence[level]))
     }
 
     /// Adds a row, some seconds after the last, to this track and its recording.

@@ -26,9 +26,8 @@ fn walk(times: impl Iterator<Item = f64>) -> Vec<(f64, Position)> {
 fn noisy(rows: &[(f64, Position)], deviation: f64, seed: u64) -> Vec<(f64, Position)> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let normal = Normal::new(0.0, deviation).unwrap();
-    let moved = rows
-        .iter()
-        .map(|&(time, position)| (time, position.map(|coordinate| coordinate + normal.sample(&mut random))));
+    let moved =
+        rows.iter().map(|&(time, position)| (time, position.map(|coordinate| coordinate + normal.sample(&mut random))));
     moved.collect()
 }
 
@@ -40,12 +39,7 @@ fn farthest(a: &[Position], b: &[Position]) -> f64 {
 /// A hundred pedestrians at 10 rows a second: the noise that is measured is the noise that was added.
 #[test]
 fn noise_is_measured() {
-    for (added, measured) in [
-        (0.0, 0.005..0.021),
-        (0.05, 0.04..0.06),
-        (0.1, 0.09..0.15),
-        (0.2, 0.14..0.29),
-    ] {
+    for (added, measured) in [(0.0, 0.005..0.021), (0.05, 0.04..0.06), (0.1, 0.09..0.15), (0.2, 0.14..0.29)] {
         let mut noise = RecordingNoise::default();
         for seed in 0..100 {
             let rows = noisy(&walk((0..30).map(|k| 0.1 * f64::from(k))), added, seed);
@@ -98,10 +92,7 @@ fn the_rows_that_are_kept_are_bounded() {
         track.forget_before(time, 0.4);
         assert!(track.rows.len() <= 2300, "{}", track.rows.len());
         let observed = track.observed(time, 0.4, 1.0, &noise);
-        assert!(
-            time < 2.81 || observed.is_some_and(|observed| observed.quality.is_whole()),
-            "{time}"
-        );
+        assert!(time < 2.81 || observed.is_some_and(|observed| observed.quality.is_whole()), "{time}");
     }
     let last = rows[rows.len() - 1].0;
     let expected = walk((0..8).map(|place| last - 0.4 * f64::from(7 - place)));
@@ -128,18 +119,13 @@ fn rows_that_go_on_from_a_jump_are_another_track() {
         let first = walk((0..20).map(|k| interval * f64::from(k)));
         let again = first[19].0 + gap;
         let second = walk((0..6).map(|k| again + interval * f64::from(k)));
-        let moved = second
-            .into_iter()
-            .map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]]));
+        let moved = second.into_iter().map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]]));
         let moved: Vec<_> = moved.collect();
         let seen = observed(&[first, moved].concat(), again + 5.0 * interval);
         let [.., before, last] = seen.positions;
         let speed = distance(before, last) / 0.4;
         assert!((1.3..1.45).contains(&speed), "{interval} {gap} {jump:?}: {speed} m/s");
         let earliest = distance(seen.positions[0], last) / 2.8;
-        assert!(
-            (1.3..1.45).contains(&earliest),
-            "{interval} {gap} {jump:?}: {earliest} m/s"
-        );
+        assert!((1.3..1.45).contains(&earliest), "{interval} {gap} {jump:?}: {earliest} m/s");
     }
 }

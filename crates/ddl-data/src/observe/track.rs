@@ -140,20 +140,14 @@ impl ObservedTrack {
         let fit = self.fit(row, tick_time, known);
         if (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time, known) {
             self.suspects.clear();
-            let turn = || Turn {
-                before: self.noise.clone(),
-                distance: fit.distance,
-            };
+            let turn = || Turn { before: self.noise.clone(), distance: fit.distance };
             self.turned = (!fit.is_expected).then(|| Box::new(turn()));
             self.accept(row, tick_time, known, recording);
             return None;
         }
         if let Some(turn) = self.turned.take() {
             // Either the last row or this one is wrong.
-            let mut without = Self {
-                noise: turn.before,
-                ..self.clone()
-            };
+            let mut without = Self { noise: turn.before, ..self.clone() };
             let wrong = without.rows.pop_back()?;
             if without.fit(row, tick_time, known).is_expected {
                 without.accept(row, tick_time, known, recording);
@@ -172,10 +166,7 @@ impl ObservedTrack {
             return None;
         }
         let (expected, margin) = self.expected_after(seconds, known);
-        Some(Expectation {
-            position: expected.position,
-            reach: ACCELERATION * seconds * seconds + margin,
-        })
+        Some(Expectation { position: expected.position, reach: ACCELERATION * seconds * seconds + margin })
     }
 
     /// The motion expected some seconds after the last row, and how far off a row may be then for its noise (m).
@@ -216,11 +207,7 @@ impl ObservedTrack {
         if distance <= SURPRISE {
             return false;
         }
-        let expected = |time: f64| {
-            self.expected_after((time - self.last_time()) * tick_time, known)
-                .0
-                .position
-        };
+        let expected = |time: f64| self.expected_after((time - self.last_time()) * tick_time, known).0.position;
         self.suspects.last().is_some_and(|suspect| {
             let [from, to] = [suspect.row.time, row.time].map(expected);
             let place = [0, 1].map(|axis| suspect.row.position[axis] + to[axis] - from[axis]);
@@ -286,10 +273,7 @@ impl ObservedTrack {
 
     /// Whether the track is too short to believe its speed: a wrong or noisy first row looks like a runner.
     pub(super) fn is_too_fast(&self, recording: &RecordingNoise, tick_time: f64) -> bool {
-        let seconds = self
-            .rows
-            .front()
-            .map_or(0.0, |first| (self.last_time() - first.time) * tick_time);
+        let seconds = self.rows.front().map_or(0.0, |first| (self.last_time() - first.time) * tick_time);
         seconds < SHORT && self.noise.motion(self.level(recording)).speed() > BRISK
     }
 

@@ -26,14 +26,7 @@ const ENTRY_CLEARANCE: f64 = 0.7;
 pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Vec<Observation> {
     let end = WARM_UP + steps as f64 * TIME_STEP;
     let parties = population::draw(layout, end, rng);
-    let mut engine = Engine {
-        layout,
-        parties,
-        waiting: Vec::new(),
-        pedestrians: Vec::new(),
-        next: 0,
-        last_id: 0,
-    };
+    let mut engine = Engine { layout, parties, waiting: Vec::new(), pedestrians: Vec::new(), next: 0, last_id: 0 };
     let mut observations = Vec::new();
     let warm_up = (WARM_UP / DT).round() as i64;
     for tick in 0..warm_up + steps * SUBSTEPS {
@@ -68,10 +61,7 @@ impl Engine<'_> {
         for index in std::mem::take(&mut self.waiting) {
             let taken: Vec<_> = self.pedestrians.iter().map(|w| w.motion.position).collect();
             let members = &self.parties[index].members;
-            if members
-                .iter()
-                .all(|m| population::is_free(m.entry, &taken, ENTRY_CLEARANCE))
-            {
+            if members.iter().all(|m| population::is_free(m.entry, &taken, ENTRY_CLEARANCE)) {
                 self.enter(index);
             } else {
                 self.waiting.push(index);
@@ -87,10 +77,7 @@ impl Engine<'_> {
             self.pedestrians.push(SimulatedPedestrian {
                 id: PedestrianId(self.last_id),
                 party: index,
-                motion: WalkingMotion {
-                    position: member.entry,
-                    velocity: scale(heading, party.speed),
-                },
+                motion: WalkingMotion { position: member.entry, velocity: scale(heading, party.speed) },
                 targets: member.targets.clone(),
                 leg: 0,
                 rest_left: member.rest,
@@ -122,12 +109,7 @@ impl Engine<'_> {
                 pedestrian.motion.velocity = moved;
             }
         }
-        let Self {
-            layout,
-            parties,
-            pedestrians,
-            ..
-        } = self;
+        let Self { layout, parties, pedestrians, .. } = self;
         pedestrians.retain_mut(|pedestrian| {
             let legs = &layout.routes[parties[pedestrian.party].route].legs;
             pedestrian.advance(legs);

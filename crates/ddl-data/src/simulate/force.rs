@@ -78,10 +78,7 @@ pub(super) fn stranger(pedestrian: WalkingMotion, other: WalkingMotion, other_ra
 }
 
 pub(super) fn pillar(pedestrian: WalkingMotion, pillar: &Pillar) -> Position {
-    let still = WalkingMotion {
-        position: pillar.centre,
-        velocity: [0.0, 0.0],
-    };
+    let still = WalkingMotion { position: pillar.centre, velocity: [0.0, 0.0] };
     stranger(pedestrian, still, pillar.radius)
 }
 
@@ -123,10 +120,8 @@ mod tests {
         for case in cases.trim().lines() {
             let numbers = case.split_whitespace().map(|n| n.parse().unwrap());
             let n: Vec<f64> = numbers.collect();
-            let moving = |from: usize| WalkingMotion {
-                position: [n[from], n[from + 1]],
-                velocity: [n[from + 2], n[from + 3]],
-            };
+            let moving =
+                |from: usize| WalkingMotion { position: [n[from], n[from + 1]], velocity: [n[from + 2], n[from + 3]] };
             let force = stranger(moving(0), moving(4), n[8]);
             assert!(norm(sub(force, [n[9], n[10]])) < 1e-8, "{case}: {force:?}");
         }

@@ -22,11 +22,7 @@ pub(super) struct Route {
 
 impl Route {
     fn new(weight: f64, origin: Line, gates: &[Line]) -> Self {
-        Self {
-            origin,
-            legs: gates.iter().copied().map(Leg::Pass).collect(),
-            weight,
-        }
+        Self { origin, legs: gates.iter().copied().map(Leg::Pass).collect(), weight }
     }
 
     /// The same route with a stop at a random place between two points before leg `index`.
@@ -95,20 +91,12 @@ fn crossing() -> SceneLayout {
             let legs = [gate(HALF, from), gate(HALF, to), gate(END, to)];
             routes.push(Route::new(weight, gate(END, from), &legs));
         }
-        let place = [
-            turn([HALF - 0.7, HALF + 2.0], from),
-            turn([HALF - 0.7, END - 2.0], from),
-        ];
+        let place = [turn([HALF - 0.7, HALF + 2.0], from), turn([HALF - 0.7, END - 2.0], from)];
         let to = (from + 1) % 4;
         let legs = [gate(HALF, from), gate(HALF, to), gate(END, to)];
         routes.push(Route::new(0.0, gate(END, from), &legs).standing(0.08, 2, place));
     }
-    SceneLayout {
-        walls,
-        pillars: Vec::new(),
-        routes,
-        arrival_interval: 3.0,
-    }
+    SceneLayout { walls, pillars: Vec::new(), routes, arrival_interval: 3.0 }
 }
 
 /// An open square of 22 m x 18 m with a fountain and trees; pedestrians cross it or meet and talk.
@@ -140,10 +128,7 @@ fn plaza() -> SceneLayout {
         }
     }
     SceneLayout {
-        walls: vec![
-            Line::new([0.0, 8.5], [0.0, 10.5]),
-            Line::new([16.0, 18.0], [21.0, 18.0]),
-        ],
+        walls: vec![Line::new([0.0, 8.5], [0.0, 10.5]), Line::new([16.0, 18.0], [21.0, 18.0])],
         pillars: vec![
             Pillar::new([11.0, 9.0], 1.6),
             Pillar::new([5.0, 9.5], 0.35),
@@ -165,14 +150,7 @@ fn bottleneck() -> SceneLayout {
     let outward = Route::new(0.2, street, &[end, mouth, room]);
     let mut walls = Vec::new();
     for side in [-1.0, 1.0] {
-        let corners = [
-            [-1.0, 5.0],
-            [7.5, 5.0],
-            [11.0, 1.2],
-            [14.0, 1.2],
-            [15.0, 4.5],
-            [24.0, 4.5],
-        ];
+        let corners = [[-1.0, 5.0], [7.5, 5.0], [11.0, 1.2], [14.0, 1.2], [15.0, 4.5], [24.0, 4.5]];
         let mirrored = corners.map(|[x, y]| [x, side * y]);
         walls.extend(mirrored.windows(2).map(|pair| Line::new(pair[0], pair[1])));
     }

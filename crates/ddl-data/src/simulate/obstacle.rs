@@ -71,9 +71,5 @@ impl Pillar {
 /// `p`, moved straight away from `point` to the given distance; unchanged if it is already that far.
 fn push_away(p: Position, point: Position, distance: f64) -> Position {
     let away = sub(p, point);
-    if norm(away) >= distance {
-        p
-    } else {
-        add(point, scale(unit(away), distance))
-    }
+    if norm(away) >= distance { p } else { add(point, scale(unit(away), distance)) }
 }

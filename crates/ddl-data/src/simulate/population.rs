@@ -61,10 +61,7 @@ fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     };
     let speeds =
         Normal::new(DESIRED_SPEED.0, DESIRED_SPEED.1).expect("the standard deviation of the desired speed is positive");
-    let mean = (0..size)
-        .map(|_| speeds.sample(rng).clamp(SPEED_RANGE.0, SPEED_RANGE.1))
-        .sum::<f64>()
-        / size as f64;
+    let mean = (0..size).map(|_| speeds.sample(rng).clamp(SPEED_RANGE.0, SPEED_RANGE.1)).sum::<f64>() / size as f64;
     let speed = if size > 1 { GROUP_PACE * mean } else { mean };
     let route = choose_route(layout, rng);
     let chosen = &layout.routes[route];
@@ -82,17 +79,9 @@ fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
             target.push(place);
         }
     }
-    let members = entries
-        .into_iter()
-        .zip(targets)
-        .map(|(entry, targets)| PartyMember { entry, targets, rest })
-        .collect();
-    Party {
-        time,
-        route,
-        speed,
-        members,
-    }
+    let members =
+        entries.into_iter().zip(targets).map(|(entry, targets)| PartyMember { entry, targets, rest }).collect();
+    Party { time, route, speed, members }
 }
 
 fn choose_route(layout: &SceneLayout, rng: &mut ChaCha8Rng) -> usize {
@@ -113,9 +102,7 @@ fn side_by_side(gate: Line, size: usize, across: f64) -> Vec<Position> {
     let spacing = GROUP_SPACING.min(room / size as f64);
     let span = spacing * (size - 1) as f64;
     let first = GATE_MARGIN + across * (room - span);
-    (0..size)
-        .map(|i| gate.at((first + spacing * i as f64) / gate.width()))
-        .collect()
+    (0..size).map(|i| gate.at((first + spacing * i as f64) / gate.width())).collect()
 }
 
 fn in_a_ring(centre: Position, size: usize, rng: &mut ChaCha8Rng) -> Vec<Position> {

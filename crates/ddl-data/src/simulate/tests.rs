@@ -18,14 +18,7 @@ struct Crowd {
 
 fn crowds() -> impl Iterator<Item = Crowd> {
     let recordings = Dataset::simulated(SEED).recordings().to_vec();
-    SCENES
-        .into_iter()
-        .zip(recordings)
-        .map(|((scene, layout), recording)| Crowd {
-            scene,
-            layout: layout(),
-            recording,
-        })
+    SCENES.into_iter().zip(recordings).map(|((scene, layout), recording)| Crowd { scene, layout: layout(), recording })
 }
 
 /// Whether the straight line from `a` to `b` (m) crosses the wall.
@@ -45,12 +38,7 @@ fn tracks(crowd: &Crowd) -> Vec<Vec<Position>> {
 
 /// Speed of every pedestrian between successive positions (m/s).
 fn speeds(crowd: &Crowd) -> Vec<f64> {
-    let steps = |track: &Vec<Position>| {
-        track
-            .windows(2)
-            .map(|w| distance(w[0], w[1]) / TIME_STEP)
-            .collect::<Vec<_>>()
-    };
+    let steps = |track: &Vec<Position>| track.windows(2).map(|w| distance(w[0], w[1]) / TIME_STEP).collect::<Vec<_>>();
     tracks(crowd).iter().flat_map(steps).collect()
 }
 
@@ -64,11 +52,7 @@ fn a_seed_gives_the_same_bytes_and_another_seed_others() {
     assert_eq!(dataset, Dataset::simulated(SEED));
     let names: Vec<&str> = dataset.recordings().iter().map(Recording::name).collect();
     assert_eq!(names, dataset.fold_names());
-    for (recording, other) in dataset
-        .recordings()
-        .iter()
-        .zip(Dataset::simulated(SEED + 1).recordings())
-    {
+    for (recording, other) in dataset.recordings().iter().zip(Dataset::simulated(SEED + 1).recordings()) {
         assert_ne!(recording.observations(), other.observations());
     }
 }
@@ -83,10 +67,7 @@ fn speeds_are_plausible() {
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
         assert!(fastest < 2.7, "{scene}: {fastest} m/s");
         let standing = share(speeds.iter().filter(|&&v| v < 0.2).count(), speeds.len());
-        assert!(
-            (0.005..0.3).contains(&standing),
-            "{scene}: {standing} of all steps stand still"
-        );
+        assert!((0.005..0.3).contains(&standing), "{scene}: {standing} of all steps stand still");
     }
 }
 

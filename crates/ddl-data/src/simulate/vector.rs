@@ -30,11 +30,7 @@ pub(super) fn norm(a: Position) -> f64 {
 /// The unit vector along `a`; zero if `a` is zero.
 pub(super) fn unit(a: Position) -> Position {
     let length = norm(a);
-    if length > 0.0 {
-        scale(a, 1.0 / length)
-    } else {
-        [0.0, 0.0]
-    }
+    if length > 0.0 { scale(a, 1.0 / length) } else { [0.0, 0.0] }
 }
 
 /// `a` turned by 90 degrees counter-clockwise.

@@ -56,10 +56,7 @@ fn invalid_clocks_and_extreme_frames_are_refused() {
     for found in [0, -1, (1 << 31) + 1] {
         assert_eq!(Clock::with_frame_step(found), Err(ClockError::FrameStep { found }));
     }
-    let (whole, parts) = (
-        Clock::with_frame_time(0.04).unwrap(),
-        Clock::with_frame_time(1.0 / 24.0).unwrap(),
-    );
+    let (whole, parts) = (Clock::with_frame_time(0.04).unwrap(), Clock::with_frame_time(1.0 / 24.0).unwrap());
     for frame in [1 << 52, -(1 << 52), i64::MIN, i64::MAX] {
         assert_eq!(parts.tick(frame), Err(ClockError::Frame { frame, ticks: 5 }));
         assert_eq!(whole.tick(frame), Ok(frame)); // refused where it is used
@@ -78,30 +75,15 @@ fn a_recording_is_counted_in_ticks_unless_its_rows_are_too_far_apart() {
     let recording = pedestrian((0..20).map(|t| 3 * t));
     let at = |seconds: f64| recording.on_clock(Clock::with_frame_time(seconds).unwrap());
     let seven = at(1.0 / 7.0).unwrap();
-    assert_eq!(
-        (seven.frames()[19], seven.observations()[19].frame, seven.frame_step()),
-        (285, 285, 14)
-    );
-    let positions = |recording: &Recording| {
-        recording
-            .observations()
-            .iter()
-            .map(|row| row.position)
-            .collect::<Vec<_>>()
-    };
+    assert_eq!((seven.frames()[19], seven.observations()[19].frame, seven.frame_step()), (285, 285, 14));
+    let positions = |recording: &Recording| recording.observations().iter().map(|row| row.position).collect::<Vec<_>>();
     assert_eq!(positions(&seven), positions(&recording));
     assert!(at(0.4).is_ok() && at(0.000_34).is_ok());
     assert!(matches!(at(0.000_33), Err(ClockError::TooFast { .. })));
     assert!(matches!(at(0.41), Err(ClockError::TooSlow { apart }) if apart > 1.2));
     let far = pedestrian((1 << 52)..(1 << 52) + 20);
     let refused = far.on_clock(Clock::with_frame_time(1.0 / 24.0).unwrap());
-    assert_eq!(
-        refused,
-        Err(ClockError::Frame {
-            frame: 1 << 52,
-            ticks: 5
-        })
-    );
+    assert_eq!(refused, Err(ClockError::Frame { frame: 1 << 52, ticks: 5 }));
 }
 
 /// A pedestrian at 1.3 m/s, seen twice a second, every 12 frame numbers.
@@ -135,10 +117,7 @@ fn scenes_of_trajnet_state_the_frame_rate() {
     let windows = recording.observed_windows();
     let speed = |track: &[[f64; 2]]| (track[7][0] - track[0][0]) / 2.8;
     let speeds: Vec<f64> = windows.iter().map(|window| speed(window.observed(0))).collect();
-    assert!(
-        speeds.len() == 24 && speeds.iter().all(|speed| (speed - 1.3).abs() < 0.02),
-        "{speeds:?}"
-    );
+    assert!(speeds.len() == 24 && speeds.iter().all(|speed| (speed - 1.3).abs() < 0.02), "{speeds:?}");
 
     // The usual files, with frames 0.4 s apart and any frame numbers, are left unchanged.
     let usual = read(&scene(r#", "fps": 2.5"#));
@@ -158,26 +137,16 @@ fn times_are_exact_to_a_microsecond_and_print_back() {
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         assert_eq!(recording.frames()[0].to_string(), expected, "{case}");
         let clock = recording.stated_clock().unwrap().unwrap();
-        assert_eq!(
-            (clock.frame_step(), clock.words(recording.frames()[0])),
-            (400_000, printed.to_owned())
-        );
+        assert_eq!((clock.frame_step(), clock.words(recording.frames()[0])), (400_000, printed.to_owned()));
         let mut stream = FrameReader::new(text.as_bytes(), "f");
-        assert_eq!(
-            stream.next_frame().unwrap().unwrap().number,
-            recording.frames()[0],
-            "{case}"
-        );
+        assert_eq!(stream.next_frame().unwrap().unwrap().number, recording.frames()[0], "{case}");
         assert_eq!(stream.time_unit(), recording.time_unit());
     }
     let whole = parse_recording(b"frame,pedestrian,x,y\n12.0,7,0,0\n", "f", Format::Table).unwrap();
     assert_eq!((whole.frames(), whole.time_unit()), (&[12][..], None));
     // One fraction shows that all are seconds.
     let seconds = parse_recording(b"frame,pedestrian,x,y\n12,7,0,0\n12.4,7,0,0\n", "f", Format::Table).unwrap();
-    assert_eq!(
-        (seconds.frames(), seconds.time_unit()),
-        (&[12_000_000, 12_400_000][..], Some(TimeUnit::Seconds))
-    );
+    assert_eq!((seconds.frames(), seconds.time_unit()), (&[12_000_000, 12_400_000][..], Some(TimeUnit::Seconds)));
 }
 
 /// A mistake decides nothing about the lines after it.
@@ -201,10 +170,7 @@ fn a_stream_goes_on_after_a_time_of_another_kind() {
 #[test]
 fn a_tick_has_a_time() {
     let seven = Clock::with_frame_time(1.0 / 7.0).unwrap();
-    assert_eq!(
-        [-14, 0, 15].map(|tick| seven.microseconds(tick)),
-        [-400_000, 0, 428_571]
-    );
+    assert_eq!([-14, 0, 15].map(|tick| seven.microseconds(tick)), [-400_000, 0, 428_571]);
     let stamps = Clock::with_stamps(TimeUnit::Dates);
     assert_eq!(stamps.microseconds(1_700_000_000_123_456), 1_700_000_000_123_456);
     let nearest = [seven.number(29), stamps.number(1_700_000_000_123_456)].map(ddl_data::FrameNumber::nearest);

@@ -56,10 +56,7 @@ fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
     let dataset = Dataset::simulated(2);
     let rule = WindowRule::Complete;
     let fold = dataset.fold("plaza").unwrap();
-    let apart = fold
-        .clone()
-        .with_validation_recordings(&["crossing".to_owned()])
-        .unwrap();
+    let apart = fold.clone().with_validation_recordings(&["crossing".to_owned()]).unwrap();
     let split = apart.training_split(rule, 0.25);
     let is_crossing = |w: &&Window| w.recording() == "crossing";
     let of_crossing = split.validation.iter().filter(is_crossing).cloned();
@@ -123,10 +120,7 @@ fn the_social_gan_split_is_that_of_the_published_files() {
 #[test]
 fn folds_never_train_on_what_they_test_on() {
     let dataset = Dataset::simulated(2);
-    assert_eq!(
-        dataset.fold_names(),
-        ["corridor", "crossing", "plaza", "bottleneck", "doorway"]
-    );
+    assert_eq!(dataset.fold_names(), ["corridor", "crossing", "plaza", "bottleneck", "doorway"]);
     assert!(Convention::Star.folds_with_place_memory().eq(["zara1", "zara2"]));
     for fold in dataset.folds() {
         let names = |rs: &[&Recording]| rs.iter().map(|r| r.name().to_owned()).collect::<Vec<_>>();
@@ -135,10 +129,7 @@ fn folds_never_train_on_what_they_test_on() {
         assert_eq!(test.len() + training.len(), dataset.recordings().len());
     }
     let error = dataset.fold("eth").unwrap_err().to_string();
-    assert!(
-        error.contains("\"eth\"") && error.contains("corridor, crossing"),
-        "{error}"
-    );
+    assert!(error.contains("\"eth\"") && error.contains("corridor, crossing"), "{error}");
 }
 
 #[test]

@@ -122,19 +122,13 @@ fn splines_and_lists_of_tracks_are_read() {
     };
     let (recording, metres) = rows("tracks.01Jul.txt", edinburgh);
     let (_, pixels) = rows("tracks.01Jul.txt homography", edinburgh);
-    assert_eq!(
-        pixels,
-        [(1, 5, [100.0, 200.0]), (1, 6, [110.0, 200.0]), (2, 7, [10.0, 20.0])]
-    );
+    assert_eq!(pixels, [(1, 5, [100.0, 200.0]), (1, 6, [110.0, 200.0]), (2, 7, [10.0, 20.0])]);
     for (metres, pixels) in metres.iter().zip(pixels) {
         assert!((0..2).all(|axis| (metres.2[axis] - 0.0247 * pixels.2[axis]).abs() < 1e-12));
     }
     assert_eq!((metres.len(), recording.stated_frame_time()), (3, Some(1.0 / 9.0)));
     let notes = recording.notes().join("; ");
-    assert!(
-        notes.contains("24.7 mm") && notes.contains("1 at the same frame"),
-        "{notes}"
-    );
+    assert!(notes.contains("24.7 mm") && notes.contains("1 at the same frame"), "{notes}");
 
     // A spline that begins at a frame that counts, and one with parts of 500 and of 501 frames.
     let vsp = "3 - the number of splines\n3 - Num of control points\n-10.0 40.0 5 0.5 - (2D point, m_id)\n\
@@ -143,23 +137,10 @@ fn splines_and_lists_of_tracks_are_read() {
     let (recording, mut rows) = rows("annotation.vsp", vsp);
     assert_eq!(recording.stated_frame_time(), Some(1.0 / 25.0));
     assert!(recording.notes()[0].contains("a forecast knows where the next one lies"));
-    assert!(
-        recording
-            .notes()
-            .iter()
-            .any(|note| note.contains("left out: 1 splines"))
-    );
+    assert!(recording.notes().iter().any(|note| note.contains("left out: 1 splines")));
     let long = rows.split_off(6);
-    let first = [
-        (1, 10, [-5.0, 40.0]),
-        (1, 20, [5.0, 40.0]),
-        (1, 30, [10.0, 45.0]),
-        (1, 40, [10.0, 55.0]),
-    ];
-    assert_eq!(
-        rows,
-        [&[(2, -20, [7.0, 1.0]), (2, -10, [3.0, 9.0])], &first[..]].concat()
-    );
+    let first = [(1, 10, [-5.0, 40.0]), (1, 20, [5.0, 40.0]), (1, 30, [10.0, 45.0]), (1, 40, [10.0, 55.0])];
+    assert_eq!(rows, [&[(2, -20, [7.0, 1.0]), (2, -10, [3.0, 9.0])], &first[..]].concat());
     for (k, (who, frame, [x, y])) in (0..50).zip(&long) {
         assert_eq!((*who, *frame), (3, 1010 + 10 * k));
         let way = (10 * k + 3) as f64 / 500.0;
@@ -183,18 +164,11 @@ fn formats_of_others_are_read_and_what_was_assumed_is_told() {
         let (frame, pedestrian, place) = (number() as i64, PedestrianId(number() as i64), [number(), number()]);
         let count = number() as usize;
         let recording = read(name, &text).unwrap();
-        assert_eq!(
-            recording.observations()[0],
-            Observation::new(frame, pedestrian, place),
-            "{file}"
-        );
+        assert_eq!(recording.observations()[0], Observation::new(frame, pedestrian, place), "{file}");
         assert_eq!(recording.observations().len(), count, "{file}");
         let notes = recording.notes().join("; ");
         let mut expected = expected.next().unwrap().split('|');
-        let is_told = |note: &str| {
-            note.strip_prefix('!')
-                .map_or(notes.contains(note), |no| !notes.contains(no))
-        };
+        let is_told = |note: &str| note.strip_prefix('!').map_or(notes.contains(note), |no| !notes.contains(no));
         assert!(expected.all(is_told), "{file}: {notes}");
         // A stream reads the same.
         let mut frames = FrameReader::new(text.as_bytes(), "t").with_columns(choice);
@@ -238,10 +212,7 @@ fn a_stream_tells_each_thing_once() {
         assert_eq!(frame.pedestrians.len(), 1);
         told.push(frames.take_notes().join("; "));
     }
-    assert_eq!(
-        told[..2],
-        ["the positions are in centimetres", "rows are left out: of class car"]
-    );
+    assert_eq!(told[..2], ["the positions are in centimetres", "rows are left out: of class car"]);
     assert!(told[2].is_empty());
 }
 

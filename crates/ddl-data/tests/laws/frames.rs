@@ -28,10 +28,7 @@ fn of_whole(recording: &Recording) -> Seen {
 }
 
 fn of_frames(frames: Vec<Frame>) -> Seen {
-    frames
-        .into_iter()
-        .map(|frame| (frame.number, frame.pedestrians))
-        .collect()
+    frames.into_iter().map(|frame| (frame.number, frame.pedestrians)).collect()
 }
 
 /// Checks that a written recording is read back, with its rows in any order. Formats that can be read frame by frame
@@ -86,10 +83,7 @@ fn an_empty_line_ends_a_frame_at_once() {
 
 #[test]
 fn after_an_error_the_next_line_is_read() {
-    let text = format!(
-        "{} 0 1 2 3\n0 1 2 3\n0 2 2 none\n0 3 2 3\n1 1 2 3\nbad\n",
-        "7".repeat(200_000)
-    );
+    let text = format!("{} 0 1 2 3\n0 1 2 3\n0 2 2 none\n0 3 2 3\n1 1 2 3\nbad\n", "7".repeat(200_000));
     let mut reader = FrameReader::new(text.as_bytes(), "t");
     let wrong = |reader: &mut FrameReader<&[u8]>| reader.next_frame().unwrap_err().to_string();
     assert!(wrong(&mut reader).contains("line 1: the line is longer than 65536 bytes"));
@@ -173,9 +167,7 @@ proptest! {
 fn an_empty_line_ends_the_frame_of_the_scene_before_it() {
     let text = "scene,frame,pedestrian,x,y\na,0,1,2,3\nb,0,1,2,3\n\na,0,2,2,3\n";
     let read = frames(text.as_bytes()).unwrap();
-    let read = read
-        .iter()
-        .map(|frame| (frame.scene.as_ref().unwrap().as_str(), frame.pedestrians.len()));
+    let read = read.iter().map(|frame| (frame.scene.as_ref().unwrap().as_str(), frame.pedestrians.len()));
     assert_eq!(read.collect::<Vec<_>>(), [("b", 1), ("a", 2)]);
 }
 

@@ -11,11 +11,7 @@ fn errors_change_nothing() {
         let before = tracks.clone();
         let (frame, far) = (last + 6, i64::MIN);
         let too_early = |frame| LiveError::TooEarly { frame, last };
-        let too_far = LiveError::NoPosition {
-            pedestrian,
-            frame,
-            position,
-        };
+        let too_far = LiveError::NoPosition { pedestrian, frame, position };
         let twice = vec![(pedestrian, here); 2];
         for (frame, pedestrians, error) in [
             (last, vec![], too_early(last)),
@@ -29,10 +25,7 @@ fn errors_change_nothing() {
         }
     }
     let recording = Recording::in_usual_step("far", vec![Observation::new(0, pedestrian, position)]);
-    assert!(matches!(
-        recording,
-        Err(RecordingError::Row(LiveError::NoPosition { .. }))
-    ));
+    assert!(matches!(recording, Err(RecordingError::Row(LiveError::NoPosition { .. }))));
     for step in [0, -1, (1 << 31) + 1] {
         let error = LiveTracks::with_frame_step(step);
         assert_eq!(error, Err(ClockError::FrameStep { found: step }));
@@ -63,10 +56,7 @@ fn no_more_pedestrians_are_kept_than_a_crowd_has() {
     tracks.push(0, crowd(0, 100_000)).unwrap();
     tracks.push(1, crowd(100_000, 100_000)).unwrap();
     let error = tracks.push(2, crowd(200_000, 1)).unwrap_err();
-    assert!(
-        matches!(error, LiveError::TooManyPedestrians { limit: 200_000 }),
-        "{error}"
-    );
+    assert!(matches!(error, LiveError::TooManyPedestrians { limit: 200_000 }), "{error}");
     // Those who were there stay, and others may come when they have left.
     tracks.push(2, crowd(0, 100_000)).unwrap();
     tracks.push(22, crowd(200_000, 100_000)).unwrap();

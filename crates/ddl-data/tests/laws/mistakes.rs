@@ -44,9 +44,7 @@ fn every_mistake_is_named_with_its_place() {
             _ => ("", text),
         };
         let text = text.replace("\\n", "\n").replace("\\t", "\t").replace("BELL", "\u{7}");
-        let text = text
-            .replace("LONG", &"a".repeat(65))
-            .replace("PLACE7", r#""p":7,"x":0,"y":0"#);
+        let text = text.replace("LONG", &"a".repeat(65)).replace("PLACE7", r#""p":7,"x":0,"y":0"#);
         let (of_the_file, of_the_stream) = expected.split_once(" STREAM ").unwrap_or((expected, expected));
         let format = Format::ALL.into_iter().find(|format| format.name() == section);
         if section != "streamed" {

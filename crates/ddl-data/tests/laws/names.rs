@@ -8,9 +8,7 @@ type Row = fn(i64, &str) -> String;
 fn pedestrians_may_be_words() {
     let names = ["7f3e-aa", "12", "007", "1e3"];
     let formats: [(Format, &str, Row); 3] = [
-        (Format::Table, "frame,pedestrian,x,y\n", |t, name| {
-            format!("{t},{name},{t},0\n")
-        }),
+        (Format::Table, "frame,pedestrian,x,y\n", |t, name| format!("{t},{name},{t},0\n")),
         (Format::SocialGan, "", |t, name| format!("{t} {name} {t} 0\n")),
         (Format::TrajNet, "", |t, name| {
             format!("{{\"track\": {{\"f\": {t}, \"p\": \"{name}\", \"x\": {t}, \"y\": 0}}}}\n")
@@ -25,10 +23,7 @@ fn pedestrians_may_be_words() {
         assert_eq!(read_names, names, "{format}");
         assert!((0..4).all(|i| window.named(&window.name(i)) == Some(i)));
         let partial = recording.live_tracks().with_completeness(Completeness::Partial);
-        assert_eq!(
-            recording.observe(partial).windows[1].name(3),
-            PedestrianName::Word("1e3".to_owned())
-        );
+        assert_eq!(recording.observe(partial).windows[1].name(3), PedestrianName::Word("1e3".to_owned()));
         // A duplicate is reported with its word.
         let twice = text.clone() + text.lines().last().unwrap();
         let read = parse_recording(twice.as_bytes(), "f", format);
@@ -40,11 +35,8 @@ fn pedestrians_may_be_words() {
         let mut frames = FrameReader::new(text.as_bytes(), "tracker");
         let mut read = 0;
         while let Some(frame) = frames.next_frame().unwrap() {
-            let frame_names: Vec<String> = frame
-                .pedestrians
-                .iter()
-                .map(|(id, _)| frame.names.of(*id).to_string())
-                .collect();
+            let frame_names: Vec<String> =
+                frame.pedestrians.iter().map(|(id, _)| frame.names.of(*id).to_string()).collect();
             assert_eq!(frame_names, names, "{format}");
             read += 1;
         }

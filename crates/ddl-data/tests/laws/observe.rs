@@ -109,17 +109,8 @@ type Bits = Vec<(i64, PedestrianId, Vec<u64>, usize)>;
 fn bits(windows: &[Window]) -> Bits {
     let of_window = |window: &Window| -> Bits {
         let of_pedestrian = |i: usize| {
-            let ObservationQuality {
-                unseen,
-                age,
-                deviation,
-                velocity_deviation,
-            } = window.quality(i);
-            let numbers = window
-                .observed(i)
-                .iter()
-                .flatten()
-                .chain([&age, &deviation, &velocity_deviation]);
+            let ObservationQuality { unseen, age, deviation, velocity_deviation } = window.quality(i);
+            let numbers = window.observed(i).iter().flatten().chain([&age, &deviation, &velocity_deviation]);
             let numbers = numbers.map(|number| number.to_bits()).collect();
             (window.frames()[OBSERVED - 1], window.pedestrians()[i], numbers, unseen)
         };
@@ -301,10 +292,7 @@ fn assert_all_observed(rows: Vec<Observation>, pedestrians: usize, from: f64, un
         if (from..until).contains(&now) {
             assert_eq!(window.len(), pedestrians, "{now} s");
             let places = (0..pedestrians).map(|i| window.observed(i)[OBSERVED - 1]);
-            assert!(
-                places.into_iter().all(|place| (place[0] - 1.2 * now).abs() < 0.1),
-                "{window:?}"
-            );
+            assert!(places.into_iter().all(|place| (place[0] - 1.2 * now).abs() < 0.1), "{window:?}");
             count += 1.0;
         }
     }
@@ -318,10 +306,7 @@ fn every_clock_is_observed() {
     let own = |id: i64| (0..30).map(|k| phases[id as usize - 1] + 400 * k).collect();
     assert_all_observed(straight(own, 6), 6, 0.8, 11.6);
     assert_all_observed(
-        straight(
-            |id| (0..25).map(|k| 40 * (10 * k + [0, 3, 7][id as usize - 1])).collect(),
-            3,
-        ),
+        straight(|id| (0..25).map(|k| 40 * (10 * k + [0, 3, 7][id as usize - 1])).collect(), 3),
         3,
         0.8,
         9.6,
@@ -332,11 +317,7 @@ fn every_clock_is_observed() {
     let observed = partial(&recording);
     assert_eq!(observed.windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
     let slow = recording.observe(recording.live_tracks().with_interval(0.4)).windows;
-    assert!(
-        (16..=18).contains(&slow.len()),
-        "{} windows every 0.4 s of the last 7.1 s",
-        slow.len()
-    );
+    assert!((16..=18).contains(&slow.len()), "{} windows every 0.4 s of the last 7.1 s", slow.len());
 }
 
 /// Two rows a second, and a turn after 4.5 s: at 4.6 s nothing of it is known.
@@ -344,26 +325,17 @@ fn every_clock_is_observed() {
 fn between_rows_a_walk_goes_on_straight() {
     let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(0.001).unwrap());
     for k in 0..10 {
-        tracks
-            .push(500 * k, [(PedestrianId(1), [0.65 * k as f64, 0.0])])
-            .unwrap();
+        tracks.push(500 * k, [(PedestrianId(1), [0.65 * k as f64, 0.0])]).unwrap();
     }
     let window = tracks.push(4_600, [(PedestrianId(2), [9.0, 9.0])]).unwrap().unwrap();
     let (quality, track) = (window.quality(0), window.observed(0));
-    assert!(
-        distance(track[7], [5.98, 0.0]) < 0.01 && distance(track[0], [2.34, 0.0]) < 0.01,
-        "{track:?}"
-    );
+    assert!(distance(track[7], [5.98, 0.0]) < 0.01 && distance(track[0], [2.34, 0.0]) < 0.01, "{track:?}");
     assert!((quality.age - 0.1).abs() < 1e-12 && quality.is_whole(), "{quality:?}");
     // Carried on up to an age, then no longer.
     let present = |tracks: LiveTracks, frame| tracks.after(frame, []).unwrap().window().is_some();
     for (age, [here, gone]) in [(0.4, [4_899, 4_900]), (1.2, [5_699, 5_700]), (f64::NAN, [4_601, 4_602])] {
         let tracks = tracks.clone().with_max_age(age);
-        assert_eq!(
-            (present(tracks.clone(), here), present(tracks, gone)),
-            (age > 0.0, false),
-            "{age}"
-        );
+        assert_eq!((present(tracks.clone(), here), present(tracks, gone)), (age > 0.0, false), "{age}");
     }
 }
 
@@ -390,14 +362,7 @@ fn the_wrong_of_two_rows_is_named() {
         let x = 0.72 * frame as f64 - if frame == 40 { 1.4 } else { 0.0 };
         tracks.push(frame, [(PedestrianId(1), [x, 0.0])]).unwrap();
     }
-    assert!(matches!(
-        tracks.misfits(),
-        [Misfit {
-            tick: 40,
-            treatment: MisfitTreatment::LeftOut,
-            ..
-        }]
-    ));
+    assert!(matches!(tracks.misfits(), [Misfit { tick: 40, treatment: MisfitTreatment::LeftOut, .. }]));
     assert!(!tracks.has_left_out(PedestrianId(1)));
     tracks.push(42, [(PedestrianId(1), [0.0, 0.0])]).unwrap();
     assert!(matches!(tracks.misfits(), [Misfit { tick: 42, .. }]) && tracks.has_left_out(PedestrianId(1)));
@@ -415,10 +380,7 @@ fn a_wrong_position_is_left_out_and_told() {
                 "{rate} {off}: {told:?}"
             );
             let seen = window.observed(0)[OBSERVED - 1];
-            assert!(
-                distance(seen, [1.4 * last as f64 / rate, 3.0]) < 0.3,
-                "{rate} {off}: {seen:?}"
-            );
+            assert!(distance(seen, [1.4 * last as f64 / rate, 3.0]) < 0.3, "{rate} {off}: {seen:?}");
             assert!((window.quality(0).age * rate - 1.0).abs() < 1e-9);
         }
     }
@@ -431,11 +393,7 @@ fn exact_recordings_are_observed_as_they_are() {
     datasets.extend(recordings::load(Convention::Star));
     for recording in datasets.iter().flat_map(Dataset::recordings) {
         let told = recording.observe(recording.live_tracks()).misfits.len();
-        assert!(
-            told <= recording.observations().len() / 2_000,
-            "{}: {told} told",
-            recording.name()
-        );
+        assert!(told <= recording.observations().len() / 2_000, "{}: {told} told", recording.name());
         let complete = recording.windows(WindowRule::Complete);
         let observed = recording.windows(WindowRule::Observed);
         if told > 0 {

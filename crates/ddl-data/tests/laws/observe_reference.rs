@@ -26,23 +26,11 @@ struct Film {
 
 fn of_window(window: &Window) -> Vec<[f64; 7]> {
     let of_pedestrian = |i: usize| {
-        let times = |axis: usize| {
-            (1..)
-                .zip(window.observed(i))
-                .map(move |(k, at)| f64::from(k) * at[axis])
-        };
+        let times = |axis: usize| (1..).zip(window.observed(i)).map(move |(k, at)| f64::from(k) * at[axis]);
         let quality = window.quality(i);
         let [x, y] = [0, 1].map(|axis| times(axis).sum());
         let (id, unseen) = (window.pedestrians()[i].0 as f64, quality.unseen as f64);
-        [
-            id,
-            x,
-            y,
-            unseen,
-            quality.age,
-            quality.deviation,
-            quality.velocity_deviation,
-        ]
+        [id, x, y, unseen, quality.age, quality.deviation, quality.velocity_deviation]
     };
     (0..window.len()).map(of_pedestrian).collect()
 }
@@ -61,35 +49,19 @@ fn films_are_observed_as_by_another_program() {
         let observed = recording.observe(tracks.with_max_age(film.max_age).with_interval(film.interval));
         for (window, (tick, expected)) in observed.windows.iter().zip(&film.windows) {
             let first = tick - 7 * film.step;
-            assert!(
-                window
-                    .frames()
-                    .iter()
-                    .copied()
-                    .eq((0..8).map(|k| first + k * film.step))
-            );
+            assert!(window.frames().iter().copied().eq((0..8).map(|k| first + k * film.step)));
             let found = of_window(window);
-            let off = found
-                .as_flattened()
-                .iter()
-                .zip(expected.as_flattened())
-                .map(|(a, b)| (a - b).abs());
+            let off = found.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
             let is_same = found.len() == expected.len() && off.fold(0.0, f64::max) < 1e-6;
             assert!(is_same, "film {number}, tick {tick}: {found:?} {expected:?}");
         }
         assert_eq!(observed.windows.len(), film.windows.len(), "film {number}");
         // Beside those whose futures are not known, a pedestrian is observed the same.
         for window in recording.windows(WindowRule::Observed) {
-            let seen = all
-                .iter()
-                .find(|seen| seen.frames() == &window.frames()[..OBSERVED])
-                .unwrap();
+            let seen = all.iter().find(|seen| seen.frames() == &window.frames()[..OBSERVED]).unwrap();
             for (i, id) in window.pedestrians().iter().enumerate() {
                 let j = seen.pedestrians().iter().position(|other| other == id).unwrap();
-                assert_eq!(
-                    (window.quality(i), window.observed(i)),
-                    (seen.quality(j), seen.observed(j))
-                );
+                assert_eq!((window.quality(i), window.observed(i)), (seen.quality(j), seen.observed(j)));
             }
         }
         for (misfit, &(tick, id, distance, treatment)) in observed.misfits.iter().zip(&film.misfits) {

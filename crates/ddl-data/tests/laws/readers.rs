@@ -29,9 +29,7 @@ fn the_most_common_difference_is_the_step() {
     let step = |frames: &[i64]| {
         let rows = frames.iter().map(|frame| format!("{frame} 1 0 0\n"));
         let text: String = rows.collect();
-        parse_recording(text.as_bytes(), "f", Format::SocialGan)
-            .unwrap()
-            .frame_step()
+        parse_recording(text.as_bytes(), "f", Format::SocialGan).unwrap().frame_step()
     };
     assert_eq!(step(&[0, 6, 12, 150, 156]), 6);
     assert_eq!(step(&[0, 10, 30]), 10);

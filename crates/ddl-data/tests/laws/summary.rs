@@ -4,9 +4,7 @@ use ddl_data::{Format, Observation, PedestrianId, PlausibilityWarning, Position,
 
 /// A pedestrian that walks along x at a speed in metres per frame, for 100 frames.
 fn walk(metres_a_frame: f64) -> Vec<Observation> {
-    (0..100)
-        .map(|t| Observation::new(t, PedestrianId(1), [metres_a_frame * t as f64, 0.0]))
-        .collect()
+    (0..100).map(|t| Observation::new(t, PedestrianId(1), [metres_a_frame * t as f64, 0.0])).collect()
 }
 
 fn warnings(seen: Vec<Observation>) -> Vec<PlausibilityWarning> {
@@ -23,12 +21,7 @@ fn implausible_speeds_give_warnings() {
     // Those who walk among more who stand show a wrong unit too.
     let crowd = (0..100).flat_map(|t| [2, 3].map(|id| stand(id, t)));
     let among = warnings(walk(3.0).into_iter().chain(crowd).collect());
-    assert!(
-        among[0]
-            .to_string()
-            .starts_with("half of the steps of walking pedestrians"),
-        "{among:?}"
-    );
+    assert!(among[0].to_string().starts_with("half of the steps of walking pedestrians"), "{among:?}");
 }
 
 /// A camera at 25 frames per second whose tracker loses every tenth detection, and with them the positions at whole
@@ -60,11 +53,7 @@ fn a_track_that_jumps_is_reported_with_its_frame() {
         panic!("{warnings:?}");
     };
     assert_eq!((&fastest.pedestrian, fastest.frame), (&PedestrianId(1).into(), 40));
-    assert!(
-        warnings[0]
-            .to_string()
-            .contains("pedestrian 1 jumps in the step that ends at frame 40")
-    );
+    assert!(warnings[0].to_string().contains("pedestrian 1 jumps in the step that ends at frame 40"));
 }
 
 #[test]
@@ -152,28 +141,16 @@ fn speeds_are_doubted_from_their_limits_on() {
     }
     // 1.5 m/s for a few rows, two of whose steps are half as fast, and 0.3 m/s otherwise: nine in ten are 53 steps.
     for (quick, expected) in [(4.0, "Slow"), (6.0, "")] {
-        check(
-            expected,
-            61,
-            &[&|t| on_way(0.06 * t + 0.24 * (t - 20.0).clamp(0.0, quick))],
-        );
+        check(expected, 61, &[&|t| on_way(0.06 * t + 0.24 * (t - 20.0).clamp(0.0, quick))]);
     }
     // 0.24 m/s now and then is not straight on.
-    check(
-        "",
-        61,
-        &[&|t| on_way(0.048 * ((t / 9.0).floor() * 3.0 + (t % 9.0).min(3.0)))],
-    );
+    check("", 61, &[&|t| on_way(0.048 * ((t / 9.0).floor() * 3.0 + (t % 9.0).min(3.0)))]);
     // Beside two who walk in a circle.
     let circle = |t: f64| [2.0 * (0.1 * t).cos(), 2.0 * (0.1 * t).sin()];
     check("", 61, &[&|t| on_way(0.019 * t), &circle, &circle]);
     // With 0.4 m of the step: 11.75 and 12.25 m/s.
     for (jump, expected) in [(4.3, ""), (4.5, "Jump")] {
-        check(
-            expected,
-            61,
-            &[&|t| on_way(0.2 * t + if t < 30.0 { 0.0 } else { jump })],
-        );
+        check(expected, 61, &[&|t| on_way(0.2 * t + if t < 30.0 { 0.0 } else { jump })]);
     }
 }
 
@@ -185,11 +162,7 @@ fn places_that_repeat_or_are_near_are_doubted_from_their_limits_on() {
         check(expected, 61, &[&stand([0.5, 0.7], one), &stand([0.9, 0.3], other)]);
     }
     // Two who stand and one who walks so far to the end of the area, along y.
-    for (side, walk, expected) in [
-        (1.45, 0.35, "Narrow"),
-        (1.45, 0.25, "Crawling"),
-        (1.55, 0.35, "Crawling"),
-    ] {
+    for (side, walk, expected) in [(1.45, 0.35, "Narrow"), (1.45, 0.25, "Crawling"), (1.55, 0.35, "Crawling")] {
         let (stand, go) = (|_| [0.1, 0.0], |t| [0.2, side - walk + walk / 60.0 * t]);
         check(expected, 61, &[&stand, &|_| [0.3, 0.5], &go]);
         check("Crawling", 61, &[&stand, &go]);
@@ -229,8 +202,5 @@ fn rows_are_summed_up_as_by_hand() {
     assert!(of_rows.into_iter().zip([5.0, 0.04, 0.32]).all(is_near), "{of_rows:?}");
     let gap = summary.longest_hole.unwrap();
     assert!(is_near((summary.seconds, 3.84)) && is_near((gap.seconds, 1.0)) && gap.after == 36);
-    assert_eq!(
-        (summary.holes, summary.low, summary.high),
-        (2, [0.0, -2.0], [4.800_000_000_000_001, -1.0])
-    );
+    assert_eq!((summary.holes, summary.low, summary.high), (2, [0.0, -2.0], [4.800_000_000_000_001, -1.0]));
 }

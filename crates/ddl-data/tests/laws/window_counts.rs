@@ -31,14 +31,8 @@ fn each_star_recording_has_the_windows_of_the_reference() {
         let actual = [frames.len() as i64, frames[0]];
         assert_eq!(actual, expected(counts, ["frames", "first_frame"]), "{name}");
         for (rule, names) in [
-            (
-                WindowRule::Published,
-                ["published_windows", "published_pedestrian_windows"],
-            ),
-            (
-                WindowRule::Complete,
-                ["complete_windows", "complete_pedestrian_windows"],
-            ),
+            (WindowRule::Published, ["published_windows", "published_pedestrian_windows"]),
+            (WindowRule::Complete, ["complete_windows", "complete_pedestrian_windows"]),
         ] {
             let actual = count(&recording.windows(rule));
             assert_eq!(actual, expected(counts, names), "{name}, {rule}");
@@ -55,10 +49,9 @@ fn each_star_fold_has_the_windows_of_the_reference() {
     assert_eq!(counts.len(), dataset.fold_names().len());
     for (name, counts) in &counts {
         let fold = dataset.fold(name).unwrap();
-        for (part, recordings) in [
-            ("test_recordings", fold.test_recordings()),
-            ("train_recordings", fold.training_recordings()),
-        ] {
+        for (part, recordings) in
+            [("test_recordings", fold.test_recordings()), ("train_recordings", fold.training_recordings())]
+        {
             let names: Vec<&str> = recordings.iter().copied().map(Recording::name).collect();
             assert_eq!(serde_json::json!(names), counts[part], "{name}");
         }
@@ -79,10 +72,7 @@ fn each_star_fold_has_the_windows_of_the_reference() {
             ("published_test", published),
             ("complete_test", fold.test_windows(WindowRule::Complete)),
             ("complete_train", training(WindowRule::Complete)),
-            (
-                "published_rule_train_before_drop_and_duplicates",
-                training(WindowRule::Published),
-            ),
+            ("published_rule_train_before_drop_and_duplicates", training(WindowRule::Published)),
         ] {
             let counts = expected(&counts[part], ["windows", "pedestrian_windows"]);
             assert_eq!(count(&windows), counts, "{name}, {part}");
@@ -99,9 +89,8 @@ fn each_social_gan_fold_has_the_windows_of_the_reference() {
     for (part, min_pedestrians) in [("min_1_pedestrian", 1), ("min_2_pedestrians", 2)] {
         let rule = WindowRule::SocialGan { min_pedestrians };
         let folds = dataset.folds().into_iter();
-        let actual: Map<String, Value> = folds
-            .map(|fold| (fold.name().to_owned(), count(&fold.test_windows(rule)).to_vec().into()))
-            .collect();
+        let actual: Map<String, Value> =
+            folds.map(|fold| (fold.name().to_owned(), count(&fold.test_windows(rule)).to_vec().into())).collect();
         assert_eq!(Value::from(actual), counts[part], "{part}");
     }
 }
@@ -109,10 +98,7 @@ fn each_social_gan_fold_has_the_windows_of_the_reference() {
 /// The first row of each file, looked up by hand: x and y are swapped where the convention swaps them, and only there.
 #[test]
 fn coordinates_are_read_the_right_way_round() {
-    for (convention, position) in [
-        (Convention::Star, [3.5881, 8.4568]),
-        (Convention::SocialGan, [8.46, 3.59]),
-    ] {
+    for (convention, position) in [(Convention::Star, [3.5881, 8.4568]), (Convention::SocialGan, [8.46, 3.59])] {
         let Some(dataset) = recordings::load(convention) else {
             return;
         };

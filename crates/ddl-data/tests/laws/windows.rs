@@ -32,12 +32,7 @@ fn present(recording: &Recording, start: i64) -> Vec<PedestrianId> {
     let step = recording.frame_step();
     let here = |frame: i64, id| recording.at(frame).iter().any(|o| o.pedestrian == id);
     let whole = |id| (0..20).all(|t| here(start + t * step, id));
-    recording
-        .at(start)
-        .iter()
-        .map(|o| o.pedestrian)
-        .filter(|&id| whole(id))
-        .collect()
+    recording.at(start).iter().map(|o| o.pedestrian).filter(|&id| whole(id)).collect()
 }
 
 proptest! {

@@ -77,11 +77,7 @@ impl StableEuler {
         if cosine > T::zero() {
             let reach = distance * cosine;
             let full = dt * speed <= reach;
-            let next = if full {
-                position + velocity * dt
-            } else {
-                position + heading * reach
-            };
+            let next = if full { position + velocity * dt } else { position + heading * reach };
             let left = attractor.distance(&next);
             if !full && left <= T::rounded(ARRIVAL) * resolution {
                 return Ok(*attractor.goal());

@@ -64,14 +64,8 @@ impl<T: Real> MotionEvidence<T> {
         let top = bounds.top_speed();
         let off_at_end = off * T::rounded(steps as f64 + 1.0);
         Self {
-            speed: Bounded {
-                largest: fastest,
-                bound: rounded(top, off / dt),
-            },
-            speed_change: Bounded {
-                largest: change,
-                bound: rounded(most_change.min(top), (off + off) / dt),
-            },
+            speed: Bounded { largest: fastest, bound: rounded(top, off / dt) },
+            speed_change: Bounded { largest: change, bound: rounded(most_change.min(top), (off + off) / dt) },
             deviation: Bounded {
                 largest: farthest_from_line(path, attractor.goal()),
                 bound: rounded(sideways, off_at_end),
@@ -133,9 +127,7 @@ mod tests {
         let attractor = Attractor::new(Vector2::new(4.8, 0.0)).unwrap();
         let bounds = MotionBounds::default();
         let evidence = MotionEvidence::new(&path, &attractor, &bounds, 0.4);
-        evidence
-            .check()
-            .map_or_else(|violation| violation.to_string(), |()| String::new())
+        evidence.check().map_or_else(|violation| violation.to_string(), |()| String::new())
     }
 
     #[test]

@@ -103,10 +103,7 @@ fn a_deserialised_certificate_is_checked() {
         read(&forged.to_string()).verify().unwrap_err()
     };
     let min_eigenvalue = 0.0;
-    let not_definite = Violation::NotPositiveDefinite {
-        step: 0,
-        min_eigenvalue,
-    };
+    let not_definite = Violation::NotPositiveDefinite { step: 0, min_eigenvalue };
     assert_eq!(with("min_eigenvalue", 0.0), not_definite);
     assert_eq!(with("rate", 0.0), Violation::NotDescending { step: 0, rate: 0.0 });
     let after = by_hand().final_potential();
@@ -123,10 +120,7 @@ fn positions_and_metrics_must_belong_together() {
     };
     for (path, metrics) in [(&[position, position][..], &[metric; 2][..]), (&[], &[])] {
         let (positions, metrics_given) = (path.len(), metrics.len());
-        let mismatch = DynamicsError::LengthMismatch {
-            positions,
-            metrics: metrics_given,
-        };
+        let mismatch = DynamicsError::LengthMismatch { positions, metrics: metrics_given };
         assert_eq!(certify(path, metrics), mismatch);
     }
     let broken = certify(&[position, Vector2::new(f64::NAN, 0.0)], &[metric]).to_string();
@@ -143,10 +137,7 @@ fn the_flow_of_the_picture_circles_its_goal_or_ends_on_it() {
     let nearest = euler.iter().map(|p| attractor.distance(p)).fold(f64::MAX, f64::min);
     assert!((0.02..0.03).contains(&nearest), "{nearest}");
     let verdict = LyapunovCertificate::of_rollout(&flow, &euler, 0.4).unwrap().verify();
-    assert!(
-        matches!(verdict, Err(Violation::NotDecreasing { step: 10, .. })),
-        "{verdict:?}"
-    );
+    assert!(matches!(verdict, Err(Violation::NotDecreasing { step: 10, .. })), "{verdict:?}");
     let stable = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 24).unwrap();
     assert_eq!(stable.iter().position(|p| p == attractor.goal()), Some(19));
 }

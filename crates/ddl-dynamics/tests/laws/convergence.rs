@@ -81,10 +81,7 @@ fn the_continuous_flow_arrives_in_time() {
         for pair in path.windows(2) {
             let [before, after] = [0, 1].map(|k| attractor.distance(&pair[k]));
             let fallen = before - after;
-            assert!(
-                fallen >= smallest * dt - speed * speed / before.max(speed) || after < speed,
-                "{lateral}"
-            );
+            assert!(fallen >= smallest * dt - speed * speed / before.max(speed) || after < speed, "{lateral}");
         }
     }
 }

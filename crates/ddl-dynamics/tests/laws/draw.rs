@@ -37,20 +37,8 @@ fn metric_draw(largest: f64) -> impl Strategy<Value = MetricDraw> {
 
 fn scene_with(metric: impl Strategy<Value = MetricDraw>) -> impl Strategy<Value = SceneDraw> {
     let dt = (-3.0..=2.0).prop_map(|exponent| 10_f64.powf(exponent));
-    (
-        uniform3(signed(1e3)),
-        uniform3(signed(1e3)),
-        vec(metric, METRICS),
-        dt,
-        uniform3(signed(1.0)),
-    )
-        .prop_map(|(start, goal, metrics, dt, direction)| SceneDraw {
-            start,
-            goal,
-            metrics,
-            dt,
-            direction,
-        })
+    (uniform3(signed(1e3)), uniform3(signed(1e3)), vec(metric, METRICS), dt, uniform3(signed(1.0)))
+        .prop_map(|(start, goal, metrics, dt, direction)| SceneDraw { start, goal, metrics, dt, direction })
 }
 
 /// Factors up to 1e3, including singular and extremely ill-conditioned ones.

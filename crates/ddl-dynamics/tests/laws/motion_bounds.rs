@@ -43,20 +43,14 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
         let [from, to] = [step[0], step[1]].map(|p| p.map(Real::as_f64));
         let goal = attractor.goal().map(Real::as_f64);
         let speed = (to - from).norm() / seconds;
-        prop_assert!(
-            speed <= top * (1.0 + 1e-6) + off / seconds,
-            "step {k}: {speed} m/s over {top}"
-        );
+        prop_assert!(speed <= top * (1.0 + 1e-6) + off / seconds, "step {k}: {speed} m/s over {top}");
         let (d, after) = ((goal - from).norm(), (goal - to).norm());
         // The angle of Kantorovich, and never past the goal.
         let range = bounds.eigenvalues(T::rounded(d), METRICS - k, dt);
         let sine = deviation_sine(range).as_f64();
         let [slow, fast] = [range.smallest, range.largest].map(Real::as_f64);
         let near = |x: f64| 1e-5 * x + off / seconds;
-        prop_assert!(
-            after <= (d - (slow - near(slow)) * seconds).max(0.0) + off,
-            "step {k}: {d} to {after}"
-        );
+        prop_assert!(after <= (d - (slow - near(slow)) * seconds).max(0.0) + off, "step {k}: {d} to {after}");
         if let Some((was, [slowest, fastest])) = before {
             let most = f64::max(fast - slowest, fastest - slow);
             let change = f64::abs(speed - was);
@@ -85,11 +79,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
 fn shaped_within<T: Real>(scene: &SceneDraw, distance: f64, left: usize) -> TestCaseResult {
     let (distance, dt) = (T::rounded(distance), T::rounded(0.4));
     let towards = Vector2::new(distance, T::zero());
-    let time = StepTime {
-        done: 12 - left,
-        left,
-        dt,
-    };
+    let time = StepTime { done: 12 - left, left, dt };
     for metric in scene.metrics::<T, 2>() {
         let bounds = MotionBounds::<T>::default().absolute();
         let range = bounds.eigenvalues(distance, left, dt);

@@ -102,9 +102,7 @@ fn values_that_are_not_finite_are_refused() {
     let attractor = Attractor::new(Vector2::new(0.0, 0.0)).unwrap();
     let one = Vector2::new(1.0, 0.0);
     let message = |position: Vector2<f64>, velocity: Vector2<f64>, dt| {
-        StableEuler::advance(&attractor, &position, &velocity, dt)
-            .unwrap_err()
-            .to_string()
+        StableEuler::advance(&attractor, &position, &velocity, dt).unwrap_err().to_string()
     };
     assert!(message(one, one, 0.0).contains("time step is 0 s"));
     assert!(message(one, one, f64::NAN).contains("time step is NaN s"));

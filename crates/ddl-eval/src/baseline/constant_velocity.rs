@@ -61,10 +61,7 @@ impl Forecaster for ConstantVelocity {
                     (NOISE_DEG * normal).to_radians()
                 });
                 let (sin, cos) = angle.sin_cos();
-                let v = [
-                    cos * velocity[0] - sin * velocity[1],
-                    sin * velocity[0] + cos * velocity[1],
-                ];
+                let v = [cos * velocity[0] - sin * velocity[1], sin * velocity[0] + cos * velocity[1]];
                 positions.extend((1..=HORIZON).map(|t| {
                     let t = t as f64;
                     [start[0] + t * v[0], start[1] + t * v[1]]
@@ -80,9 +77,7 @@ fn stream(seed: u64, window: &Window) -> ChaCha8Rng {
     let key = window
         .recording()
         .bytes()
-        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
-        });
+        .fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3));
     let mut random = ChaCha8Rng::seed_from_u64(seed ^ key);
     random.set_stream(window.start_frame().cast_unsigned());
     random
@@ -126,9 +121,6 @@ mod tests {
         // The root mean square of 2,000 draws of N(0, 25^2) deviates by 0.4.
         assert!((rms - 25.0).abs() < 1.6, "{rms}");
         assert_eq!(forecast, noisy.forecast(&turning()).unwrap());
-        assert_ne!(
-            forecast,
-            ConstantVelocity::AngularNoise { seed: 4 }.forecast(&turning()).unwrap()
-        );
+        assert_ne!(forecast, ConstantVelocity::AngularNoise { seed: 4 }.forecast(&turning()).unwrap());
     }
 }

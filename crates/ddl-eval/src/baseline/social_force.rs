@@ -88,11 +88,7 @@ impl ForcedPedestrian {
         let (before, position) = (observed[OBSERVED - 2], observed[OBSERVED - 1]);
         let desired = [0, 1].map(|c| (position[c] - before[c]) / TIME_STEP);
         let speed = length(desired);
-        let direction = if speed > 0.0 {
-            desired.map(|c| c / speed)
-        } else {
-            [0.0, 0.0]
-        };
+        let direction = if speed > 0.0 { desired.map(|c| c / speed) } else { [0.0, 0.0] };
         Self {
             position,
             velocity: desired,
@@ -117,11 +113,7 @@ impl ForcedPedestrian {
             let push = self.push_of(other);
             // The other pedestrian is in the direction opposite to the repulsion.
             let ahead = -(push[0] * self.direction[0] + push[1] * self.direction[1]);
-            let weight = if ahead > sight * length(push) {
-                1.0
-            } else {
-                OUT_OF_SIGHT
-            };
+            let weight = if ahead > sight * length(push) { 1.0 } else { OUT_OF_SIGHT };
             sum = [sum[0] + weight * push[0], sum[1] + weight * push[1]];
         }
         sum
@@ -152,11 +144,7 @@ impl ForcedPedestrian {
         let dt = TIME_STEP / SUBSTEPS as f64;
         let wanted = [0, 1].map(|c| self.velocity[c] + dt * force[c]);
         let speed = length(wanted);
-        self.velocity = if speed > self.top_speed {
-            wanted.map(|c| c * self.top_speed / speed)
-        } else {
-            wanted
-        };
+        self.velocity = if speed > self.top_speed { wanted.map(|c| c * self.top_speed / speed) } else { wanted };
         self.stride = FORESIGHT * length(self.velocity);
         self.position = [0, 1].map(|c| self.position[c] + dt * self.velocity[c]);
     }
@@ -195,11 +183,7 @@ mod tests {
             [[-0.074_799, 0.351_699], [2.540_464, 0.591_208], [5.858_509, 0.937_668]],
             [[2.2, -0.9], [2.2, -0.9], [2.2, -0.9]],
             [[1.292_55, -1.591_609], [1.559_65, -1.544_855], [1.765_47, -1.214_87]],
-            [
-                [1.017_195, -1.631_743],
-                [0.485_226, -0.251_914],
-                [-0.045_555, -0.942_513],
-            ],
+            [[1.017_195, -1.631_743], [0.485_226, -0.251_914], [-0.045_555, -0.942_513]],
             [[1.603_798, 0.406_865], [1.288_51, 0.075_426], [0.150_498, -0.346_733]],
         ];
         for (i, expected) in expected.into_iter().enumerate() {

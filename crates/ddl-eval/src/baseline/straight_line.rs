@@ -36,14 +36,11 @@ impl GoalSource for TrueEndpoint {
 
     fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
         let end = |i| window.end(i).map(WeightedGoals::certain);
-        (0..window.len())
-            .map(end)
-            .collect::<Option<_>>()
-            .ok_or_else(|| ForecastError::FutureMissing {
-                forecaster: self.name(),
-                recording: window.recording().to_owned(),
-                start_frame: window.start_frame(),
-            })
+        (0..window.len()).map(end).collect::<Option<_>>().ok_or_else(|| ForecastError::FutureMissing {
+            forecaster: self.name(),
+            recording: window.recording().to_owned(),
+            start_frame: window.start_frame(),
+        })
     }
 }
 
@@ -62,12 +59,7 @@ impl<G: GoalSource> Forecaster for StraightLine<G> {
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         let sets = self.0.goals(window)?;
-        let refuse = |problem| {
-            Err(ForecastError::Goals {
-                goal_source: self.0.name(),
-                problem,
-            })
-        };
+        let refuse = |problem| Err(ForecastError::Goals { goal_source: self.0.name(), problem });
         if sets.len() != window.len() {
             return refuse(format!("{} goal sets for {} pedestrians", sets.len(), window.len()));
         }
@@ -85,13 +77,7 @@ impl<G: GoalSource> Forecaster for StraightLine<G> {
         }
         let weights = sets.iter().flat_map(|set| set.weights().iter().copied()).collect();
         let goals = sets.iter().flat_map(|set| set.goals().iter().copied()).collect();
-        Ok(Forecast::new(
-            window.len(),
-            hypotheses,
-            positions,
-            weights,
-            Some(goals),
-        )?)
+        Ok(Forecast::new(window.len(), hypotheses, positions, weights, Some(goals))?)
     }
 }
 
@@ -101,10 +87,7 @@ fn between(start: Position, goal: Position, t: usize) -> Position {
         return goal;
     }
     let share = t as f64 / HORIZON as f64;
-    [
-        start[0] + share * (goal[0] - start[0]),
-        start[1] + share * (goal[1] - start[1]),
-    ]
+    [start[0] + share * (goal[0] - start[0]), start[1] + share * (goal[1] - start[1])]
 }
 
 #[cfg(test)]

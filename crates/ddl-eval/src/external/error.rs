@@ -16,44 +16,24 @@ pub enum ExternalError {
     #[error("{origin}: {source}")]
     Io { origin: String, source: std::io::Error },
     #[error("{origin}, line {line}{}: {problem}", field.as_deref().map(|f| format!(", {f}")).unwrap_or_default())]
-    Line {
-        origin: String,
-        line: usize,
-        field: Option<String>,
-        problem: String,
-    },
+    Line { origin: String, line: usize, field: Option<String>, problem: String },
     #[error(
         "{origin} forecasts {} of the {pedestrians} pedestrians in the windows; {missing} are missing, the first of \
          them \
          {}; forecast them too, or score the intersection only",
         pedestrians - missing, first.join(", ")
     )]
-    Missing {
-        origin: String,
-        missing: usize,
-        pedestrians: usize,
-        first: Vec<String>,
-    },
+    Missing { origin: String, missing: usize, pedestrians: usize, first: Vec<String> },
     #[error(
         "{origin}: {unknown} of {forecasts} forecasts match no pedestrian of the windows, the first one {}; {hint}",
         first.join(", ")
     )]
-    Unknown {
-        origin: String,
-        unknown: usize,
-        forecasts: usize,
-        first: Vec<String>,
-        hint: String,
-    },
+    Unknown { origin: String, unknown: usize, forecasts: usize, first: Vec<String>, hint: String },
     #[error(
         "{origin}: half of the forecasts start {metres:.1} m or more from the pedestrian's last observed position; \
          {hint}"
     )]
-    OutOfPlace {
-        origin: String,
-        metres: f64,
-        hint: &'static str,
-    },
+    OutOfPlace { origin: String, metres: f64, hint: &'static str },
     #[error("two windows of `{recording}` are observed until frame {observed_until}: use the windows of one rule")]
     AmbiguousWindows { recording: String, observed_until: i64 },
     #[error(

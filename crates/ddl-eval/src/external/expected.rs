@@ -63,12 +63,8 @@ pub(super) struct ExpectedForecasts<'a> {
 
 impl<'a> ExpectedForecasts<'a> {
     pub(super) fn of(windows: &'a [Window], origin: &str) -> Result<Self, ExternalError> {
-        let mut expected = Self {
-            origin: origin.to_owned(),
-            windows,
-            slots: Vec::with_capacity(windows.len()),
-            ..Self::default()
-        };
+        let mut expected =
+            Self { origin: origin.to_owned(), windows, slots: Vec::with_capacity(windows.len()), ..Self::default() };
         for (index, window) in windows.iter().enumerate() {
             let name = window.recording();
             let recording = expected.index_of(name).unwrap_or_else(|| {
@@ -77,10 +73,7 @@ impl<'a> ExpectedForecasts<'a> {
             });
             let observed_until = last_observed(window);
             if expected.by_last.insert((recording, observed_until), index).is_some() {
-                return Err(ExternalError::AmbiguousWindows {
-                    recording: name.to_owned(),
-                    observed_until,
-                });
+                return Err(ExternalError::AmbiguousWindows { recording: name.to_owned(), observed_until });
             }
             expected.slots.push(window.pedestrians().iter().map(|_| None).collect());
         }
@@ -163,8 +156,7 @@ impl<'a> ExpectedForecasts<'a> {
         let step = self.windows.first().map_or(1, Window::frame_step);
         let as_first_frame = in_window(who.observed_until.saturating_add(step * (OBSERVED as i64 - 1)));
         let as_next_frame = in_window(who.observed_until.saturating_sub(step));
-        self.unknown
-            .remember(who, recording_name, as_first_frame, as_next_frame);
+        self.unknown.remember(who, recording_name, as_first_frame, as_next_frame);
     }
 }
 

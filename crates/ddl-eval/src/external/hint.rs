@@ -54,10 +54,9 @@ impl Unknown {
         }
         // If more forecasts match without a shift, the frame is not the reason.
         let most = fitting.max(self.count / 2);
-        for (count, frame) in [
-            (self.as_first_frame, "first frame of a window"),
-            (self.as_next_frame, "first frame forecast"),
-        ] {
+        for (count, frame) in
+            [(self.as_first_frame, "first frame of a window"), (self.as_next_frame, "first frame forecast")]
+        {
             if count > most {
                 return format!(
                     "most would match if observed_until were the {frame}; it must be the last observed one"

@@ -115,9 +115,7 @@ fn without_no_numbers(text: &str) -> Cow<'_, str> {
             escaped = byte == b'\\' && !escaped;
         } else if byte == b'"' {
             quoted = true;
-        } else if let Some(word) = NO_NUMBERS
-            .iter()
-            .find(|word| text.as_bytes()[index..].starts_with(word.as_bytes()))
+        } else if let Some(word) = NO_NUMBERS.iter().find(|word| text.as_bytes()[index..].starts_with(word.as_bytes()))
         {
             replaced += &text[done..index];
             replaced += "null";

@@ -74,10 +74,7 @@ impl JsonForecast {
         }
         let weighted = self.hypotheses.iter().filter(|h| h.weight.is_some()).count();
         if weighted != 0 && weighted != count {
-            return Err(in_field(
-                "hypotheses",
-                "all hypotheses of a pedestrian must have weights, or none",
-            ));
+            return Err(in_field("hypotheses", "all hypotheses of a pedestrian must have weights, or none"));
         }
         let with_goal = self.hypotheses.iter().filter(|h| h.goal.is_some()).count();
         let mut forecast = PedestrianForecast {

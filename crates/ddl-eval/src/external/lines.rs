@@ -45,12 +45,7 @@ pub(super) fn wrong_length(found: usize) -> String {
 
 impl<R: BufRead> Lines<R> {
     pub(super) fn new(reader: R, origin: &str) -> Self {
-        Self {
-            reader,
-            origin: origin.to_owned(),
-            number: 0,
-            line: Vec::new(),
-        }
+        Self { reader, origin: origin.to_owned(), number: 0, line: Vec::new() }
     }
 
     /// The next line that is not blank, with its number from 1; `None` at the end of the file.
@@ -60,10 +55,7 @@ impl<R: BufRead> Lines<R> {
             self.number += 1;
             let mut limited = self.reader.by_ref().take(LIMIT as u64 + 1);
             let read = limited.read_until(b'\n', &mut self.line);
-            let length = read.map_err(|source| ExternalError::Io {
-                origin: self.origin.clone(),
-                source,
-            })?;
+            let length = read.map_err(|source| ExternalError::Io { origin: self.origin.clone(), source })?;
             if length == 0 {
                 return Ok(None);
             }
@@ -91,12 +83,7 @@ impl<R: BufRead> Lines<R> {
 }
 
 pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> ExternalError {
-    ExternalError::Line {
-        origin: origin.to_owned(),
-        line,
-        field,
-        problem,
-    }
+    ExternalError::Line { origin: origin.to_owned(), line, field, problem }
 }
 
 pub(super) fn whole(number: f64) -> Option<i64> {

@@ -117,10 +117,8 @@ impl ExpectedForecasts<'_> {
             let slots: Vec<Slot> = slots.into_iter().flatten().collect();
             matched.windows.push(reduced);
             matched.full_windows.push(window.clone());
-            let forecast = forecast(slots).map_err(|source| ExternalError::Shape {
-                origin: self.origin.clone(),
-                source,
-            })?;
+            let forecast =
+                forecast(slots).map_err(|source| ExternalError::Shape { origin: self.origin.clone(), source })?;
             matched.forecasts.push(forecast);
         }
         Ok(matched)

@@ -25,31 +25,16 @@ pub fn measure(conditions: &Conditions, matched: &Matched) -> Result<Vec<ResultR
         return Err(ExternalError::Published);
     }
     matched.ensure_in_place()?;
-    let subsets: Vec<String> = conditions
-        .test_subset
-        .iter()
-        .cloned()
-        .chain(matched.test_subset())
-        .collect();
+    let subsets: Vec<String> = conditions.test_subset.iter().cloned().chain(matched.test_subset()).collect();
     let conditions = Conditions {
         test_subset: (!subsets.is_empty()).then(|| subsets.join("; ")),
         selection: Some("made by another program".to_owned()),
         ..conditions.clone()
     };
-    let forecasts = conditions
-        .protocol
-        .admit(matched.forecasts.clone(), &conditions.forecaster)?;
-    let mut rows = vec![ResultRow::score_among(
-        conditions.clone(),
-        &matched.windows,
-        &matched.full_windows,
-        &forecasts,
-    )?];
-    rows.extend(baseline::measure_among(
-        &conditions,
-        &matched.windows,
-        &matched.full_windows,
-    )?);
+    let forecasts = conditions.protocol.admit(matched.forecasts.clone(), &conditions.forecaster)?;
+    let mut rows =
+        vec![ResultRow::score_among(conditions.clone(), &matched.windows, &matched.full_windows, &forecasts)?];
+    rows.extend(baseline::measure_among(&conditions, &matched.windows, &matched.full_windows)?);
     Ok(rows)
 }
 
@@ -80,11 +65,7 @@ impl Matched {
         } else {
             "are they in metres, and of the same data convention and fold?"
         };
-        Err(ExternalError::OutOfPlace {
-            origin: self.file.clone(),
-            metres,
-            hint,
-        })
+        Err(ExternalError::OutOfPlace { origin: self.file.clone(), metres, hint })
     }
 }
 

@@ -95,9 +95,5 @@ impl HypothesisNumbering {
 }
 
 fn range(first: i64, last: i64) -> String {
-    if first == last {
-        first.to_string()
-    } else {
-        format!("{first} to {last}")
-    }
+    if first == last { first.to_string() } else { format!("{first} to {last}") }
 }

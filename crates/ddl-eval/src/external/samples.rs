@@ -46,26 +46,16 @@ pub fn write_samples(windows: &[Window], forecasts: &[Forecast], folder: &Path) 
         EvaluationError::unless_same_pedestrians(window, forecast.pedestrians())?;
         let name = window.recording();
         if !Path::new(name).components().eq([Component::Normal(name.as_ref())]) {
-            return Err(in_folder(
-                folder,
-                format!("recording `{name}` cannot be the name of a folder"),
-            ));
+            return Err(in_folder(folder, format!("recording `{name}` cannot be the name of a folder")));
         }
-        let moment = folder
-            .join(scene_name(name))
-            .join(format!("frame_{:06}", last_observed(window)));
+        let moment = folder.join(scene_name(name)).join(format!("frame_{:06}", last_observed(window)));
         fs::create_dir_all(&moment).map_err(|source| of_file(&moment, source))?;
         let [ahead, _] = frames_ahead(window);
         let paths = |path: &dyn Fn(usize) -> Vec<Position>| (0..window.len()).map(path).collect::<Vec<_>>();
         let observed = paths(&|i| window.observed(i).to_vec());
         write(&moment.join("obs.txt"), window, &window.frames()[..OBSERVED], &observed)?;
         if window.has_future() {
-            write(
-                &moment.join("gt.txt"),
-                window,
-                &ahead,
-                &paths(&|i| window.future(i).to_vec()),
-            )?;
+            write(&moment.join("gt.txt"), window, &ahead, &paths(&|i| window.future(i).to_vec()))?;
         }
         for k in 0..forecast.hypotheses() {
             let future = paths(&|i| forecast.hypothesis(i, k).to_vec());
@@ -159,11 +149,7 @@ fn read_window(
         }
     }
     for (pedestrian, (line, forecast)) in all {
-        let who = PedestrianKey {
-            recording: Some(recording.to_owned()),
-            observed_until,
-            pedestrian,
-        };
+        let who = PedestrianKey { recording: Some(recording.to_owned()), observed_until, pedestrian };
         let put = expected.put(&who, forecast, line);
         put.map_err(|problem| wrong(&samples[0].display().to_string(), line, problem))?;
     }
@@ -192,9 +178,7 @@ fn row(text: &str) -> Result<(PedestrianName, i64, Position), Wrong> {
     let fields: Vec<&str> = text.split_ascii_whitespace().collect();
     let &[frame, pedestrian, x, y] = fields.as_slice() else {
         let found = fields.len();
-        return Err(whole_line(format!(
-            "{found} numbers; a row is `frame pedestrian x y`, with spaces between them"
-        )));
+        return Err(whole_line(format!("{found} numbers; a row is `frame pedestrian x y`, with spaces between them")));
     };
     let position = [finite(x, "x")?, finite(y, "y")?];
     within_bounds(position, || "x, y".to_owned())?;
@@ -213,10 +197,7 @@ fn samples_of(moment: &Path) -> Result<Vec<PathBuf>, ExternalError> {
     let gap = (0..).zip(&samples).find(|(k, (number, _))| k != number);
     let missing = gap.map(|(k, _)| k).or(samples.is_empty().then_some(0));
     match missing {
-        Some(k) => Err(in_folder(
-            moment,
-            format!("{} is missing; samples are numbered from 000", sample_name(k)),
-        )),
+        Some(k) => Err(in_folder(moment, format!("{} is missing; samples are numbered from 000", sample_name(k)))),
         None => Ok(samples.into_iter().map(|(_, file)| file).collect()),
     }
 }
@@ -242,9 +223,7 @@ fn numbered<N: std::str::FromStr + Ord>(
 
 /// The literature's name of a recording: that of its `social-gan` file, such as `biwi_eth`; for others their own name.
 fn scene_name(recording: &str) -> &str {
-    let stems = Convention::SocialGan
-        .file_names()
-        .filter_map(|file| file.strip_suffix(".txt"));
+    let stems = Convention::SocialGan.file_names().filter_map(|file| file.strip_suffix(".txt"));
     let mut named = stems.filter(|stem| stem.split_once('_').is_some_and(|(_, name)| name == recording));
     named.next().unwrap_or(recording)
 }
@@ -258,8 +237,5 @@ fn in_folder(path: &Path, problem: impl Into<String>) -> ExternalError {
 }
 
 fn of_file(path: &Path, source: Error) -> ExternalError {
-    ExternalError::Io {
-        origin: path.display().to_string(),
-        source,
-    }
+    ExternalError::Io { origin: path.display().to_string(), source }
 }

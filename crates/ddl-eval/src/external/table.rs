@@ -101,11 +101,7 @@ impl TableColumns {
         }
         let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| fields.get(place));
         let who = PedestrianKey {
-            recording: self
-                .recording
-                .map(|place| fields.get(place))
-                .filter(|name| !name.is_empty())
-                .map(str::to_owned),
+            recording: self.recording.map(|place| fields.get(place)).filter(|name| !name.is_empty()).map(str::to_owned),
             observed_until: whole(observed_until, REQUIRED[0])?,
             pedestrian: name(pedestrian)?,
         };
@@ -119,13 +115,7 @@ impl TableColumns {
         };
         let position = [finite(x, REQUIRED[3])?, finite(y, REQUIRED[4])?];
         within_bounds(position, || "x, y".to_owned())?;
-        Ok(TablePosition {
-            who,
-            hypothesis,
-            weight,
-            frame: whole(frame, REQUIRED[2])?,
-            position,
-        })
+        Ok(TablePosition { who, hypothesis, weight, frame: whole(frame, REQUIRED[2])?, position })
     }
 }
 
@@ -145,11 +135,7 @@ struct HypothesisRows {
 
 impl PedestrianRows {
     fn new(who: PedestrianKey, line: usize) -> Self {
-        Self {
-            who,
-            line,
-            hypotheses: Vec::new(),
-        }
+        Self { who, line, hypotheses: Vec::new() }
     }
 
     fn add(&mut self, row: &TablePosition, line: usize) -> Result<(), Wrong> {
@@ -194,9 +180,7 @@ impl PedestrianRows {
     ) -> Result<(PedestrianKey, PedestrianForecast), AtLine<Wrong>> {
         self.hypotheses.sort_by_key(|rows| rows.hypothesis);
         let numbers: Vec<i64> = self.hypotheses.iter().map(|rows| rows.hypothesis).collect();
-        numbering
-            .check(&numbers, &self.who.named())
-            .map_err(|problem| (self.line, in_field("hypothesis", problem)))?;
+        numbering.check(&numbers, &self.who.named()).map_err(|problem| (self.line, in_field("hypothesis", problem)))?;
         let mut forecast = PedestrianForecast::default();
         for rows in self.hypotheses {
             let found = rows.positions.len();

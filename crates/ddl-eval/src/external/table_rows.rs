@@ -41,15 +41,7 @@ impl Fields<'_> {
 
 impl<R: BufRead> TableRows<R> {
     pub(super) fn new(lines: Lines<R>) -> Self {
-        Self {
-            lines,
-            reader: Reader::new(),
-            line: Vec::new(),
-            number: 0,
-            at: 0,
-            fields: Vec::new(),
-            ends: Vec::new(),
-        }
+        Self { lines, reader: Reader::new(), line: Vec::new(), number: 0, at: 0, fields: Vec::new(), ends: Vec::new() }
     }
 
     pub(super) fn next(&mut self) -> Result<Option<Fields<'_>>, ExternalError> {
@@ -71,10 +63,7 @@ impl<R: BufRead> TableRows<R> {
         if result != ReadRecordResult::Record {
             return Err(self.wrong(whole_line("a quote is not closed on this line")));
         }
-        Ok(Some(Fields {
-            text: &self.fields,
-            ends: &self.ends[..count],
-        }))
+        Ok(Some(Fields { text: &self.fields, ends: &self.ends[..count] }))
     }
 
     pub(super) fn wrong(&self, wrong: Wrong) -> ExternalError {

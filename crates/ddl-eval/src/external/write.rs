@@ -96,8 +96,5 @@ fn write_line(writer: &mut impl Write, line: &impl Serialize) -> Result<(), Exte
 }
 
 fn cannot_write(source: std::io::Error) -> ExternalError {
-    ExternalError::Io {
-        origin: "cannot write".to_owned(),
-        source,
-    }
+    ExternalError::Io { origin: "cannot write".to_owned(), source }
 }

@@ -51,21 +51,14 @@ impl DistributionErrors {
             let about = inflation * scene.forecast().scale(i, t).unwrap_or(0.0).powi(2);
             let axes = moments
                 .covariance
-                .plus(Covariance {
-                    xx: about,
-                    xy: 0.0,
-                    yy: about,
-                })
+                .plus(Covariance { xx: about, xy: 0.0, yy: about })
                 .principal_axes()
                 .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
             let off = [p[0] - moments.mean[0], p[1] - moments.mean[1]];
             distance += axes.mahalanobis_squared(off).sqrt();
             covariance = covariance.plus(axes.covariance());
         }
-        Some(Self {
-            mahalanobis: distance / HORIZON as f64,
-            covariance: covariance.scaled(1.0 / HORIZON as f64),
-        })
+        Some(Self { mahalanobis: distance / HORIZON as f64, covariance: covariance.scaled(1.0 / HORIZON as f64) })
     }
 }
 

@@ -44,11 +44,7 @@ pub fn closest_approach(a: &[Position], b: &[Position]) -> f64 {
 fn distance_to_origin(r0: Position, r1: Position) -> f64 {
     let d = [r1[0] - r0[0], r1[1] - r0[1]];
     let length_squared = d[0] * d[0] + d[1] * d[1];
-    let s = if length_squared > 0.0 {
-        (-(r0[0] * d[0] + r0[1] * d[1]) / length_squared).clamp(0.0, 1.0)
-    } else {
-        0.0
-    };
+    let s = if length_squared > 0.0 { (-(r0[0] * d[0] + r0[1] * d[1]) / length_squared).clamp(0.0, 1.0) } else { 0.0 };
     (r0[0] + s * d[0]).hypot(r0[1] + s * d[1])
 }
 
@@ -69,9 +65,7 @@ pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
 /// The [representative](ddl_core::Forecast::representative) forecast of each pedestrian, metres.
 pub(crate) fn representative_tracks<'a>(scene: &ScoredWindow<'a>) -> Vec<&'a [Position]> {
     let forecast = scene.forecast();
-    (0..scene.pedestrians())
-        .map(|i| forecast.hypothesis(i, forecast.representative(i)))
-        .collect()
+    (0..scene.pedestrians()).map(|i| forecast.hypothesis(i, forecast.representative(i))).collect()
 }
 
 /// Whether the true future of each pedestrian collides with that of another one, forecast or not; `[N]`.

@@ -24,11 +24,7 @@ impl DeployableErrors {
         let (ade, fde) = (mean(&ades), mean(&fdes));
         ades.sort_by(|a, b| b.total_cmp(a));
         let worst = (WORST * ades.len() as f64).round().max(1.0) as usize;
-        Self {
-            ade,
-            fde,
-            worst_ade: mean(&ades[..worst]),
-        }
+        Self { ade, fde, worst_ade: mean(&ades[..worst]) }
     }
 }
 

@@ -56,11 +56,7 @@ impl DisplacementErrors {
                 .map(|(i, k)| error(scene.forecast().hypothesis(i, k), scene.truth(i)))
                 .collect()
         };
-        Self {
-            hypotheses,
-            ade: table(average_displacement),
-            fde: table(final_displacement),
-        }
+        Self { hypotheses, ade: table(average_displacement), fde: table(final_displacement) }
     }
 
     /// ADE of each hypothesis of pedestrian `i`, metres.

@@ -39,9 +39,6 @@ impl Diversity {
             }
         }
         let pairs = (k * (k - 1) / 2) as f64;
-        Some(Self {
-            path: path / pairs,
-            ends: ends / pairs,
-        })
+        Some(Self { path: path / pairs, ends: ends / pairs })
     }
 }

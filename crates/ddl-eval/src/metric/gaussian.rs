@@ -24,21 +24,13 @@ impl Covariance {
     /// Every entry times `factor` (no unit).
     #[must_use]
     pub(crate) fn scaled(self, factor: f64) -> Self {
-        Self {
-            xx: factor * self.xx,
-            xy: factor * self.xy,
-            yy: factor * self.yy,
-        }
+        Self { xx: factor * self.xx, xy: factor * self.xy, yy: factor * self.yy }
     }
 
     /// The sum of both covariances.
     #[must_use]
     pub(crate) fn plus(self, other: Self) -> Self {
-        Self {
-            xx: self.xx + other.xx,
-            xy: self.xy + other.xy,
-            yy: self.yy + other.yy,
-        }
+        Self { xx: self.xx + other.xx, xy: self.xy + other.xy, yy: self.yy + other.yy }
     }
 
     /// Eigenvalues, the larger first, and the unit eigenvector of the larger one.
@@ -46,10 +38,7 @@ impl Covariance {
         let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         let radius = half.hypot(self.xy);
         let (sin, cos) = (0.5 * self.xy.atan2(half)).sin_cos();
-        PrincipalAxes {
-            variances: [mean + radius, mean - radius],
-            axis: [cos, sin],
-        }
+        PrincipalAxes { variances: [mean + radius, mean - radius], axis: [cos, sin] }
     }
 }
 
@@ -66,10 +55,7 @@ impl PrincipalAxes {
     /// The same axes, with eigenvalues below `least` (square metres) raised to it, so that an inverse exists.
     #[must_use]
     pub(crate) fn with_least_eigenvalues(self, least: f64) -> Self {
-        Self {
-            variances: self.variances.map(|variance| variance.max(least)),
-            ..self
-        }
+        Self { variances: self.variances.map(|variance| variance.max(least)), ..self }
     }
 
     /// The matrix that has these axes.
@@ -115,11 +101,7 @@ impl Moments {
         let mean = weighted().fold([0.0, 0.0], |m, (p, w)| [m[0] + w * p[0], m[1] + w * p[1]]);
         let covariance = weighted().fold(Covariance::default(), |c, (p, w)| {
             let d = [p[0] - mean[0], p[1] - mean[1]];
-            c.plus(Covariance {
-                xx: w * d[0] * d[0],
-                xy: w * d[0] * d[1],
-                yy: w * d[1] * d[1],
-            })
+            c.plus(Covariance { xx: w * d[0] * d[0], xy: w * d[0] * d[1], yy: w * d[1] * d[1] })
         });
         Self { mean, covariance }
     }

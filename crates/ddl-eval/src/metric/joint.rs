@@ -74,12 +74,7 @@ impl JointScores {
             ade_windows += ade / n as f64 / windows;
             fde_windows += fde / n as f64 / windows;
         }
-        Some(Self {
-            ade_windows,
-            fde_windows,
-            collisions,
-            close_collisions,
-        })
+        Some(Self { ade_windows, fde_windows, collisions, close_collisions })
     }
 }
 
@@ -101,9 +96,7 @@ impl SceneFutures {
             best: share(forecast[d][best]),
             truth: share(truth[d][0]),
         };
-        Self {
-            collisions: [of_distance(0), of_distance(1)],
-        }
+        Self { collisions: [of_distance(0), of_distance(1)] }
     }
 }
 
@@ -113,9 +106,7 @@ impl SceneFutures {
 fn colliding<'a>(n: usize, futures: usize, path: impl Fn(usize, usize) -> &'a [Position]) -> [Vec<usize>; 2] {
     // No path is empty.
     let around = |path: &[Position]| bounds(path.iter().copied()).unwrap_or_default();
-    let boxes: Vec<Vec<[Position; 2]>> = (0..n)
-        .map(|i| (0..futures).map(|k| around(path(i, k))).collect())
-        .collect();
+    let boxes: Vec<Vec<[Position; 2]>> = (0..n).map(|i| (0..futures).map(|k| around(path(i, k))).collect()).collect();
     let whole: Vec<[Position; 2]> = boxes.iter().map(|boxes| around(boxes.as_flattened())).collect();
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by(|&a, &b| whole[a][0][0].total_cmp(&whole[b][0][0]));

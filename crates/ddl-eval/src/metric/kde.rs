@@ -51,15 +51,11 @@ pub(crate) fn log_density(points: &[Position], weights: &[f64], position: Positi
     let unbiased: f64 = weights.iter().map(|w| w * (1.0 - w)).sum();
     let scott = concentration.powf(1.0 / 6.0);
     let factor = if unbiased > 0.0 { scott * scott / unbiased } else { 0.0 };
-    let bandwidth = moments
-        .covariance
-        .scaled(factor)
-        .principal_axes()
-        .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
+    let bandwidth =
+        moments.covariance.scaled(factor).principal_axes().with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
     let normalisation = std::f64::consts::TAU.ln() + 0.5 * bandwidth.ln_determinant();
-    log_sum(points, weights, |p| {
-        -0.5 * bandwidth.mahalanobis_squared([position[0] - p[0], position[1] - p[1]])
-    }) - normalisation
+    log_sum(points, weights, |p| -0.5 * bandwidth.mahalanobis_squared([position[0] - p[0], position[1] - p[1]]))
+        - normalisation
 }
 
 /// `ln f(at)` of the mixture of Student's t of this scale (m) around weighted points.

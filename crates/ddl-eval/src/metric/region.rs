@@ -57,8 +57,7 @@ pub(crate) fn weight_log_loss(scene: &ScoredWindow<'_>, i: usize) -> Option<f64>
 pub(crate) fn equivalent_radius(region: &[Disc]) -> f64 {
     let bound = |axis: usize, side: f64| {
         let ends = region.iter().map(|disc| disc.centre[axis] + side * disc.radius);
-        ends.reduce(if side < 0.0 { f64::min } else { f64::max })
-            .unwrap_or_default()
+        ends.reduce(if side < 0.0 { f64::min } else { f64::max }).unwrap_or_default()
     };
     let [left, right, low, high] = [bound(0, -1.0), bound(0, 1.0), bound(1, -1.0), bound(1, 1.0)];
     let middle = |from: f64, to: f64, cell: usize| from + (to - from) * (cell as f64 + 0.5) / CELLS as f64;

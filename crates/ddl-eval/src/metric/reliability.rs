@@ -101,13 +101,8 @@ mod tests {
         assert_eq!(Reliability::of([]), None);
         // 11 goals in bins of 2 and one of 1, predicted and observed: 0.15 and 0.5, 0.225 and 0.5, 0.325 and 0, 0.45
         // and 0.5, 0.85 and 0.5, 1 and 1.
-        let sets: [(&[f64], usize); 5] = [
-            (&[0.5, 0.3, 0.2], 0),
-            (&[0.9, 0.1], 1),
-            (&[0.4, 0.35, 0.25], 2),
-            (&[0.8, 0.2], 0),
-            (&[1.0], 0),
-        ];
+        let sets: [(&[f64], usize); 5] =
+            [(&[0.5, 0.3, 0.2], 0), (&[0.9, 0.1], 1), (&[0.4, 0.35, 0.25], 2), (&[0.8, 0.2], 0), (&[1.0], 0)];
         let uneven = Reliability::of(sets).unwrap();
         for (found, by_hand) in [
             (uneven.bins[0].predicted, 0.15),

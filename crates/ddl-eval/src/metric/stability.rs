@@ -40,12 +40,8 @@ pub struct RolloutStability {
 impl RolloutStability {
     /// Checks the rollout `path` from `start` against `goal`, all in metres, without a certificate.
     pub fn of(start: Position, path: &[Position], goal: Position) -> Self {
-        let mut result = Self {
-            decreasing: true,
-            end_distance: distance(start, goal),
-            largest_turn: 0.0,
-            certified: None,
-        };
+        let mut result =
+            Self { decreasing: true, end_distance: distance(start, goal), largest_turn: 0.0, certified: None };
         let mut here = start;
         for &next in path {
             let (before, after) = (distance(here, goal), distance(next, goal));

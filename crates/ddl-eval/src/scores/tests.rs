@@ -13,33 +13,17 @@ fn what_does_not_belong_together_is_refused() {
     let error = |w: &[Window], f: &[Forecast]| Scores::evaluate(w, f).unwrap_err();
     assert!(matches!(error(&[], &[]), EvaluationError::NoWindows));
     let uneven = error(&windows, &[]);
-    assert!(matches!(
-        uneven,
-        EvaluationError::Count {
-            windows: 2,
-            forecasts: 0
-        }
-    ));
+    assert!(matches!(uneven, EvaluationError::Count { windows: 2, forecasts: 0 }));
     let of_window = |w: &[Window], f: &[Forecast]| match error(w, f) {
         EvaluationError::Window { problem, .. } => problem,
         other => panic!("{other}"),
     };
     let (expected, found) = (1, 2);
-    assert_eq!(
-        of_window(&windows, &[one.clone(), two]),
-        WindowProblem::Hypotheses { expected, found }
-    );
-    assert_eq!(
-        of_window(&windows[..1], &[pair]),
-        WindowProblem::Pedestrians { expected, found }
-    );
+    assert_eq!(of_window(&windows, &[one.clone(), two]), WindowProblem::Hypotheses { expected, found });
+    assert_eq!(of_window(&windows[..1], &[pair]), WindowProblem::Pedestrians { expected, found });
     let tracks = || vec![windows[0].track(0).to_vec()];
     let full = |name: &str, start| Window::new(name, start, 10, windows[0].pedestrians().to_vec(), tracks()).unwrap();
-    for (full, fits) in [
-        (full("made up", 0), true),
-        (full("other", 0), false),
-        (full("made up", 9), false),
-    ] {
+    for (full, fits) in [(full("made up", 0), true), (full("other", 0), false), (full("made up", 9), false)] {
         let scored = Scores::under(Protocol::Fair, &windows[..1], &[full], std::slice::from_ref(&one));
         assert_eq!(scored.is_ok(), fits);
     }

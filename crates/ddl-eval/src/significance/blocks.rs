@@ -63,15 +63,13 @@ pub fn block_errors(
     for (window, [min_ade, min_fde]) in windows.iter().zip(sums) {
         let length = BLOCK_STEPS.saturating_mul(window.frame_step());
         let block = window.start_frame().div_euclid(length);
-        let sum = blocks
-            .entry((window.recording(), block))
-            .or_insert_with(|| BlockErrors {
-                recording: window.recording().to_owned(),
-                block,
-                pedestrians: 0,
-                min_ade: 0.0,
-                min_fde: 0.0,
-            });
+        let sum = blocks.entry((window.recording(), block)).or_insert_with(|| BlockErrors {
+            recording: window.recording().to_owned(),
+            block,
+            pedestrians: 0,
+            min_ade: 0.0,
+            min_fde: 0.0,
+        });
         sum.pedestrians += window.len();
         sum.min_ade += min_ade;
         sum.min_fde += min_fde;

@@ -32,10 +32,8 @@ pub struct Interval {
 /// every fold draws as many of its blocks as it has, with replacement; its mean is that of the pedestrians in them.
 /// `None` without folds, or with a fold of fewer than 10.
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: fn(&BlockErrors) -> f64) -> Option<Interval> {
-    let folds: Vec<Vec<PartialSum>> = folds
-        .iter()
-        .map(|blocks| blocks.iter().map(|b| PartialSum::of(metric(b), b)).collect())
-        .collect();
+    let folds: Vec<Vec<PartialSum>> =
+        folds.iter().map(|blocks| blocks.iter().map(|b| PartialSum::of(metric(b), b)).collect()).collect();
     interval(&folds)
 }
 
@@ -47,10 +45,7 @@ pub(super) struct PartialSum {
 
 impl PartialSum {
     pub(super) fn of(sum: f64, block: &BlockErrors) -> Self {
-        Self {
-            sum,
-            pedestrians: block.pedestrians,
-        }
+        Self { sum, pedestrians: block.pedestrians }
     }
 }
 
@@ -77,11 +72,7 @@ pub(super) fn interval(folds: &[Vec<PartialSum>]) -> Option<Interval> {
         })
         .collect();
     resamples.sort_by(f64::total_cmp);
-    Some(Interval {
-        mean: mean_of(&means),
-        low: percentile(&resamples, 0.025),
-        high: percentile(&resamples, 0.975),
-    })
+    Some(Interval { mean: mean_of(&means), low: percentile(&resamples, 0.025), high: percentile(&resamples, 0.975) })
 }
 
 pub(super) fn generator() -> ChaCha8Rng {
@@ -89,9 +80,7 @@ pub(super) fn generator() -> ChaCha8Rng {
 }
 
 pub(super) fn mean(parts: impl Iterator<Item = PartialSum>) -> Option<f64> {
-    let (sum, pedestrians) = parts.fold((0.0, 0), |(sum, count), part| {
-        (sum + part.sum, count + part.pedestrians)
-    });
+    let (sum, pedestrians) = parts.fold((0.0, 0), |(sum, count), part| (sum + part.sum, count + part.pedestrians));
     (pedestrians > 0).then(|| sum / pedestrians as f64)
 }
 

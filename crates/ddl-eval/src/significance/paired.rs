@@ -39,10 +39,7 @@ pub fn paired_difference(
             .then(|| pairs.map(|(a, b)| PartialSum::of(metric(a) - metric(b), a)).collect())
     };
     let folds: Vec<_> = first.iter().zip(second).map(of_fold).collect::<Option<_>>()?;
-    interval(&folds).map(|difference| PairedDifference {
-        difference,
-        p_value: p_value(&folds, difference.mean),
-    })
+    interval(&folds).map(|difference| PairedDifference { difference, p_value: p_value(&folds, difference.mean) })
 }
 
 fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
@@ -52,10 +49,9 @@ fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
     let mut at_least = 1;
     for _ in 0..RESAMPLES {
         let means = folds.iter().map(|fold| {
-            let flipped = fold.iter().map(|part| PartialSum {
-                sum: if random.random::<bool>() { part.sum } else { -part.sum },
-                ..*part
-            });
+            let flipped = fold
+                .iter()
+                .map(|part| PartialSum { sum: if random.random::<bool>() { part.sum } else { -part.sum }, ..*part });
             mean(flipped).unwrap_or(f64::NAN)
         });
         let difference = means.sum::<f64>() / folds.len() as f64;
@@ -110,10 +106,7 @@ mod tests {
         };
         let first = folds(|b, fold| 0.1 * (5.0 * b % 11.0) + 0.2 * fold);
         let second = folds(|b, fold| 0.07 * (3.0 * b % 13.0) + 0.1 * fold);
-        let (first, second) = (
-            first.each_ref().map(Vec::as_slice),
-            second.each_ref().map(Vec::as_slice),
-        );
+        let (first, second) = (first.each_ref().map(Vec::as_slice), second.each_ref().map(Vec::as_slice));
         let compared = paired_difference(&first, &second, |block| block.min_fde).unwrap();
         let mean = mean_interval(&first, |block| block.min_fde).unwrap();
         for (found, mean, [low, high]) in [

@@ -61,11 +61,7 @@ fn rebuilt(forecast: &Forecast, order: &[usize], by: impl Fn(Position) -> Positi
     let path = |(i, h)| forecast.hypothesis(i, h).iter().map(|p| by(*p));
     let takes_every = k == forecast.hypotheses();
     let weight = |(i, h)| {
-        if takes_every {
-            forecast.weight(i, h)
-        } else {
-            1.0 / k as f64
-        }
+        if takes_every { forecast.weight(i, h) } else { 1.0 / k as f64 }
     };
     let goals = pairs().map(|(i, h)| forecast.goal(i, h).map(&by)).collect();
     let positions = pairs().flat_map(path).collect();
@@ -78,25 +74,19 @@ fn in_order(forecast: &Forecast) -> Vec<usize> {
 
 /// Pedestrians of up to 2 m/s who turn and change speed somewhat, near one another: of all kinds of motion.
 fn walking(n: usize) -> impl Strategy<Value = Window> {
-    let pedestrian = (
-        (-3.0..3.0_f64, -3.0..3.0_f64),
-        (0.0..0.8_f64, -3.2..3.2_f64),
-        (-0.12..0.12_f64, 0.94..1.06_f64),
-    );
+    let pedestrian = ((-3.0..3.0_f64, -3.0..3.0_f64), (0.0..0.8_f64, -3.2..3.2_f64), (-0.12..0.12_f64, 0.94..1.06_f64));
     vec(pedestrian, n).prop_map(|pedestrians| {
-        let tracks = pedestrians
-            .iter()
-            .map(|&((x, y), (mut speed, mut heading), (turn, growth))| {
-                let mut here = [x, y];
-                let mut track = vec![here];
-                for _ in 1..WINDOW {
-                    here = [here[0] + speed * heading.cos(), here[1] + speed * heading.sin()];
-                    track.push(here);
-                    speed = (speed * growth).min(0.8);
-                    heading += turn;
-                }
-                track
-            });
+        let tracks = pedestrians.iter().map(|&((x, y), (mut speed, mut heading), (turn, growth))| {
+            let mut here = [x, y];
+            let mut track = vec![here];
+            for _ in 1..WINDOW {
+                here = [here[0] + speed * heading.cos(), here[1] + speed * heading.sin()];
+                track.push(here);
+                speed = (speed * growth).min(0.8);
+                heading += turn;
+            }
+            track
+        });
         let ids = (0..).take(pedestrians.len()).map(PedestrianId).collect();
         Window::new("made up", 0, 10, ids, tracks.collect()).unwrap()
     })

@@ -48,10 +48,7 @@ fn check(what: &str, actual: &Value, expected: &Value) {
         }
         (Value::Number(actual), Value::Number(expected)) => {
             let [actual, expected] = [actual, expected].map(|number| number.as_f64().unwrap());
-            assert!(
-                (actual - expected).abs() < 1e-9,
-                "{what}: {actual}, expected {expected}"
-            );
+            assert!((actual - expected).abs() < 1e-9, "{what}: {actual}, expected {expected}");
         }
         _ => assert_eq!(actual, expected, "{what}"),
     }
@@ -79,13 +76,7 @@ fn every_score_of_several_windows_is_the_one_computed_elsewhere() {
             regions: reference.regions.clone().into(),
         };
         bare.push(forecast.clone());
-        forecasts.push(
-            forecast
-                .with_familiarity(scene.familiarity)
-                .unwrap()
-                .with_spread(spread)
-                .unwrap(),
-        );
+        forecasts.push(forecast.with_familiarity(scene.familiarity).unwrap().with_spread(spread).unwrap());
         full_windows.push(full);
         windows.push(window);
     }
@@ -94,11 +85,7 @@ fn every_score_of_several_windows_is_the_one_computed_elsewhere() {
     reference.scores.extend(reference.bare);
     check("without spread", &scores(&bare), &json(&reference.scores));
     for (protocol, expected) in [Protocol::Fair, Protocol::Joint].into_iter().zip(&reference.blocks) {
-        check(
-            "blocks",
-            &json(block_errors(protocol, &windows, &forecasts).unwrap()),
-            expected,
-        );
+        check("blocks", &json(block_errors(protocol, &windows, &forecasts).unwrap()), expected);
         let (convention, rule) = (Convention::Star, WindowRule::Complete);
         let conditions = Conditions::new(convention, rule, protocol, "yard", "any");
         let row = ResultRow::score(conditions, &windows, &forecasts).unwrap();

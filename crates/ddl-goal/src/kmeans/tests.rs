@@ -21,11 +21,7 @@ struct ClusteredPoints {
 }
 
 fn single(clusters: usize, tolerance: f64, max_iterations: usize) -> KMeans {
-    KMeans {
-        max_iterations,
-        tolerance,
-        ..KMeans::new(clusters, 1)
-    }
+    KMeans { max_iterations, tolerance, ..KMeans::new(clusters, 1) }
 }
 
 fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
@@ -36,9 +32,7 @@ fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
 
 fn recomputed_inertia(clustering: &Clustering, points: &[[f64; 2]]) -> f64 {
     let labelled = clustering.labels.iter().zip(points);
-    labelled
-        .map(|(&label, &point)| squared_distance(clustering.centres[label], point))
-        .sum()
+    labelled.map(|(&label, &point)| squared_distance(clustering.centres[label], point)).sum()
 }
 
 #[test]
@@ -68,10 +62,7 @@ fn fewer_distinct_points_than_clusters_repeat_centres() {
     let mut points = vec![[1.0, 2.0]; 60];
     points.extend([[3.0, 4.0]; 40]);
     let clustering = KMeans::new(5, 10).fit(&points, 3).unwrap();
-    assert_eq!(
-        clustering.centres,
-        [[1.0, 2.0], [3.0, 4.0], [1.0, 2.0], [3.0, 4.0], [1.0, 2.0]]
-    );
+    assert_eq!(clustering.centres, [[1.0, 2.0], [3.0, 4.0], [1.0, 2.0], [3.0, 4.0], [1.0, 2.0]]);
     assert_eq!(clustering.sizes(), [60, 40, 0, 0, 0]);
     assert_eq!(clustering.inertia, 0.0);
     // The two zeros are one point.

@@ -41,11 +41,7 @@ fn reference() -> Definition {
 }
 
 fn of_six(library: &[Coefficients], clusters: usize) -> GoalEstimator {
-    let params = GoalEstimatorParams {
-        experts: 6,
-        clusters,
-        ..Default::default()
-    };
+    let params = GoalEstimatorParams { experts: 6, clusters, ..Default::default() };
     estimator(params, library.iter().map(|&walk| track(walk)).collect())
 }
 
@@ -72,9 +68,7 @@ fn distances_weights_and_endpoints_agree_with_the_definition() {
 #[test]
 fn a_goal_is_the_weighted_mean_of_its_analogues() {
     let reference = reference();
-    let DefinedPedestrian {
-        track: walk, analogues, ..
-    } = &reference.pedestrians[0];
+    let DefinedPedestrian { track: walk, analogues, .. } = &reference.pedestrians[0];
     let estimator = of_six(&reference.library, 2);
     let set = estimator.estimate(&track(*walk)).unwrap();
     for (k, group) in [&analogues[..3], &analogues[3..]].into_iter().enumerate() {
@@ -96,10 +90,7 @@ fn equal_analogues_weigh_the_same() {
         onward.for_each(|(place, step)| place[1] += side * 0.1 * f64::from(step));
         track
     };
-    let params = GoalEstimatorParams {
-        clusters: 3,
-        ..Default::default()
-    };
+    let params = GoalEstimatorParams { clusters: 3, ..Default::default() };
     let library = [3.0, 0.0, -3.0].map(turned).to_vec();
     let set = estimator(params, library).estimate(&turned(0.0)).unwrap();
     // Each track is present with its mirror image.
@@ -111,10 +102,7 @@ fn equal_analogues_weigh_the_same() {
 #[test]
 fn the_nearest_hundred_experts_are_kept() {
     let tracks = (0..300_u32).map(|i| walk(0.005 * f64::from(i), 0.1, 0.01));
-    let params = GoalEstimatorParams {
-        experts: 250,
-        ..Default::default()
-    };
+    let params = GoalEstimatorParams { experts: 250, ..Default::default() };
     let set = estimator(params, tracks.collect()).estimate(&walk(1.0, 0.1, 0.01));
     let set = set.unwrap();
     assert_eq!(set.experts().len(), 100);

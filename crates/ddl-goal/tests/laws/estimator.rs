@@ -21,10 +21,7 @@ fn estimator(mut params: GoalEstimatorParams) -> GoalEstimator {
 
 fn both_frames() -> [GoalEstimatorParams; 2] {
     let query = QuerySpan::Observed;
-    let world = GoalEstimatorParams {
-        query,
-        ..GoalEstimatorParams::published()
-    };
+    let world = GoalEstimatorParams { query, ..GoalEstimatorParams::published() };
     [GoalEstimatorParams::default(), world]
 }
 
@@ -142,11 +139,7 @@ fn the_seed_decides_in_the_frame_of_the_world_only() {
     let track = walk(1.1, 0.4, 0.01);
     let [own, world] = both_frames().map(|params| {
         (1..12)
-            .map(|seed| {
-                estimator(GoalEstimatorParams { seed, ..params.clone() })
-                    .estimate(&track)
-                    .unwrap()
-            })
+            .map(|seed| estimator(GoalEstimatorParams { seed, ..params.clone() }).estimate(&track).unwrap())
             .collect::<Vec<_>>()
     });
     assert!(own.iter().all(|set| set == &own[0]));
@@ -178,10 +171,7 @@ fn rounding_errors_move_goals_only_slightly() {
 #[test]
 fn invalid_input_is_reported() {
     let refused = |experts| {
-        let params = GoalEstimatorParams {
-            experts,
-            ..GoalEstimatorParams::published()
-        };
+        let params = GoalEstimatorParams { experts, ..GoalEstimatorParams::published() };
         GoalEstimator::new(params, ExpertLibrary::new(library(), 0.4).unwrap()).unwrap_err()
     };
     let (tracks, experts) = (400, 401);
@@ -191,10 +181,7 @@ fn invalid_input_is_reported() {
     let estimator = estimator(GoalEstimatorParams::default());
     let track = walk(1.0, 0.0, 0.0);
     // The heading frame accepts fewer tracks.
-    let params = GoalEstimatorParams {
-        experts: 1_000,
-        ..Default::default()
-    };
+    let params = GoalEstimatorParams { experts: 1_000, ..Default::default() };
     let goals = tracks::estimator(params, library()).estimate(&track);
     assert_eq!(goals.unwrap().goals().len(), 20);
     let (positions, needed) = (7, 8);

@@ -33,10 +33,7 @@ fn goal_error(goals: &GoalSet, track: &[[f64; 2]]) -> f64 {
 
 fn mean_error(estimator: &GoalEstimator, queries: &[&[[f64; 2]]], tracks: &[Vec<[f64; 2]>]) -> f64 {
     let estimated = estimator.estimate_batch(queries).unwrap();
-    let errors = estimated
-        .iter()
-        .zip(tracks)
-        .map(|(goals, track)| goal_error(goals, track));
+    let errors = estimated.iter().zip(tracks).map(|(goals, track)| goal_error(goals, track));
     errors.sum::<f64>() / tracks.len() as f64
 }
 
@@ -50,24 +47,16 @@ fn recordings() -> Option<Dataset> {
 
 fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows {
     let windows = dataset.recording(recording).unwrap().windows(rule);
-    let pairs = windows
-        .iter()
-        .flat_map(|window| (0..window.len()).map(move |i| (window, i)));
+    let pairs = windows.iter().flat_map(|window| (0..window.len()).map(move |i| (window, i)));
     let key = |window: &Window, i: usize| (window.start_frame(), window.pedestrians()[i].0);
-    pairs
-        .map(|(window, i)| (key(window, i), window.track(i).to_vec()))
-        .collect()
+    pairs.map(|(window, i)| (key(window, i), window.track(i).to_vec())).collect()
 }
 
 fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEstimator {
     let names = dataset.recordings().iter().map(Recording::name);
     let training = names.filter(|&name| name != test_recording);
     let tracks = training.flat_map(|name| windows(dataset, name, WindowRule::Complete).into_values());
-    let params = GoalEstimatorParams {
-        experts,
-        seed: 1,
-        ..GoalEstimatorParams::published()
-    };
+    let params = GoalEstimatorParams { experts, seed: 1, ..GoalEstimatorParams::published() };
     estimator(params, tracks.collect())
 }
 
@@ -88,11 +77,7 @@ fn expert_distances_are_the_published_ones() {
         let windows = windows(&dataset, recording, WindowRule::Complete);
         let (mut same_rank, mut compared) = (0, 0);
         let (mut error, mut published_error) = (0.0, 0.0);
-        for pedestrian in reference
-            .pedestrians
-            .iter()
-            .filter(|pedestrian| pedestrian.fold == fold)
-        {
+        for pedestrian in reference.pedestrians.iter().filter(|pedestrian| pedestrian.fold == fold) {
             assert_eq!(pedestrian.recording, recording);
             let track = &windows[&(pedestrian.start_frame, pedestrian.pedestrian)];
             let goals = estimator.estimate(track).unwrap();
@@ -113,15 +98,9 @@ fn expert_distances_are_the_published_ones() {
             published_error += pedestrian.goal_error_m / 50.0;
         }
         assert_eq!(compared, 200);
-        assert!(
-            same_rank > 120,
-            "{fold}: only {same_rank} of 200 distances have their own rank"
-        );
+        assert!(same_rank > 120, "{fold}: only {same_rank} of 200 distances have their own rank");
         // k-means draws other random numbers: single goals differ, but not their mean quality.
-        assert!(
-            (error - published_error).abs() < 0.04,
-            "{fold}: {error} m, {published_error} m"
-        );
+        assert!((error - published_error).abs() < 0.04, "{fold}: {error} m, {published_error} m");
     }
 }
 
@@ -152,14 +131,8 @@ fn the_heading_frame_transfers_between_streets() {
     let queries: Vec<&[[f64; 2]]> = pedestrians.iter().map(|track| &track[..8]).collect();
     let error = |params: GoalEstimatorParams| mean_error(&estimator(params, library.clone()), &queries, &pedestrians);
     let query = QuerySpan::Observed;
-    let world = error(GoalEstimatorParams {
-        query,
-        ..GoalEstimatorParams::published()
-    });
+    let world = error(GoalEstimatorParams { query, ..GoalEstimatorParams::published() });
     let heading = error(GoalEstimatorParams::default());
-    println!(
-        "{} pedestrians: {heading:.4} m, {world:.4} m in the frame of the world",
-        pedestrians.len()
-    );
+    println!("{} pedestrians: {heading:.4} m, {world:.4} m in the frame of the world", pedestrians.len());
     assert!(heading < 0.85 * world, "{heading} m, {world} m");
 }

@@ -23,11 +23,7 @@ struct Pedestrian {
 
 impl Crowd {
     pub fn new(seed: u64, count: usize) -> Self {
-        let mut crowd = Self {
-            rng: ChaCha8Rng::seed_from_u64(seed),
-            next_id: 0,
-            pedestrians: Vec::new(),
-        };
+        let mut crowd = Self { rng: ChaCha8Rng::seed_from_u64(seed), next_id: 0, pedestrians: Vec::new() };
         for _ in 0..count {
             let mut pedestrian = crowd.pedestrian();
             pedestrian.steps_left = 1 + (crowd.random() * 40.0) as usize;
@@ -68,9 +64,6 @@ impl Crowd {
                 self.pedestrians[index] = self.pedestrian();
             }
         }
-        self.pedestrians
-            .iter()
-            .map(|pedestrian| (PedestrianId(pedestrian.id), pedestrian.position))
-            .collect()
+        self.pedestrians.iter().map(|pedestrian| (PedestrianId(pedestrian.id), pedestrian.position)).collect()
     }
 }

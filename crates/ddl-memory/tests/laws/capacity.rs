@@ -102,16 +102,10 @@ fn a_pedestrian_walking_about_for_hours_does_not_fill_a_memory() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
     walk(&mut memory, -100, 3.0);
     for frame in 0..20_000 {
-        memory
-            .observe(frame, [(PedestrianId(1), [0.5 * frame as f64, 0.0])])
-            .unwrap();
+        memory.observe(frame, [(PedestrianId(1), [0.5 * frame as f64, 0.0])]).unwrap();
     }
     let most = 8 * 32;
-    assert!(
-        (most - 7..=most + 1).contains(&memory.segments()),
-        "{}",
-        memory.segments()
-    );
+    assert!((most - 7..=most + 1).contains(&memory.segments()), "{}", memory.segments());
     let newest: [Position; OBSERVED] = std::array::from_fn(|t| [0.5 * (19_980 + t) as f64, 0.0]);
     assert!(memory.recall(&newest, None, 1)[0].distance < 1e-9);
     let summary = memory.summary();

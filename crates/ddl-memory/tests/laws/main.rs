@@ -56,7 +56,5 @@ fn queries(frames: &Frames) -> Vec<(PedestrianId, [Position; OBSERVED])> {
         let observed: Option<Vec<Position>> = last.iter().map(|(_, seen)| place(seen, id)).collect();
         Some((id, observed?.try_into().ok()?))
     };
-    last.last().map_or(Vec::new(), |(_, pedestrians)| {
-        pedestrians.iter().filter_map(query).collect()
-    })
+    last.last().map_or(Vec::new(), |(_, pedestrians)| pedestrians.iter().filter_map(query).collect())
 }

@@ -55,9 +55,7 @@ fn distance(a: &[Position], b: &[Position]) -> f64 {
 
 /// The smallest distance of each pedestrian except `pedestrian`, in order, below the limit.
 fn reference(frames: &Frames, observed: &[Position; OBSERVED], pedestrian: Option<PedestrianId>) -> Vec<f64> {
-    let others = segments(frames)
-        .into_iter()
-        .filter(|(id, runs, _)| !(*runs && Some(*id) == pedestrian));
+    let others = segments(frames).into_iter().filter(|(id, runs, _)| !(*runs && Some(*id) == pedestrian));
     let nearest = others.map(|(_, _, segments)| {
         let distances = segments.iter().map(|segment| distance(segment, observed));
         distances.fold(f64::INFINITY, f64::min)
@@ -166,11 +164,7 @@ fn a_jump_of_the_tracker_costs_no_precision() {
             let observed = std::array::from_fn(|t| [position(first + t)[0] + 1e-3, 0.0]);
             let nearest = memory.recall(&observed, None, 1)[0];
             assert_eq!(nearest.track, std::array::from_fn(|t| position(first + t)));
-            assert!(
-                (nearest.distance - 1e-6).abs() < 1e-7,
-                "{far} {first} {}",
-                nearest.distance
-            );
+            assert!((nearest.distance - 1e-6).abs() < 1e-7, "{far} {first} {}", nearest.distance);
         }
     }
 }
@@ -211,43 +205,25 @@ fn rows_between_the_steps_give_segments() {
     for (step, frames) in films {
         let mut memory = SceneMemory::new(step, 1_000).unwrap();
         for &frame in &frames {
-            memory
-                .observe(frame, [(PedestrianId(1), [0.48 * frame as f64 / step as f64, 2.0])])
-                .unwrap();
+            memory.observe(frame, [(PedestrianId(1), [0.48 * frame as f64 / step as f64, 2.0])]).unwrap();
         }
         let track: Vec<Position> = memory.tracks().next().unwrap();
         let off = |(k, place): (usize, &Position)| (place[0] - 0.48 * k as f64).hypot(place[1] - 2.0);
-        assert!(
-            track.iter().enumerate().map(off).all(|off| off < 1e-4),
-            "{step}: {track:?}"
-        );
-        assert_eq!(
-            (track.len(), memory.segments()),
-            (101, 82),
-            "{step}, {} frames",
-            frames.len()
-        );
+        assert!(track.iter().enumerate().map(off).all(|off| off < 1e-4), "{step}: {track:?}");
+        assert_eq!((track.len(), memory.segments()), (101, 82), "{step}, {} frames", frames.len());
     }
 }
 
 /// Rows are not joined over more than 1.2 s (a step has ten frames).
 #[test]
 fn long_gaps_begin_another_run() {
-    for (spacing, resumed, segments) in [
-        (10, 310, 42),
-        (10, 320, 43),
-        (10, 340, 23),
-        (1, 311, 43),
-        (1, 321, 44),
-        (1, 329, 44),
-        (1, 331, 23),
-    ] {
+    for (spacing, resumed, segments) in
+        [(10, 310, 42), (10, 320, 43), (10, 340, 23), (1, 311, 43), (1, 321, 44), (1, 329, 44), (1, 331, 23)]
+    {
         let mut memory = SceneMemory::new(10, 1_000).unwrap();
         let then = (resumed..resumed + 300).step_by(spacing);
         for frame in (0..=300).step_by(spacing).chain(then) {
-            memory
-                .observe(frame, [(PedestrianId(1), [0.05 * frame as f64, 0.0])])
-                .unwrap();
+            memory.observe(frame, [(PedestrianId(1), [0.05 * frame as f64, 0.0])]).unwrap();
         }
         assert_eq!(memory.segments(), segments, "{spacing} {resumed}");
     }
@@ -258,10 +234,7 @@ fn long_gaps_begin_another_run() {
 fn tracks_that_begin_anew_are_not_joined() {
     let mut memory = SceneMemory::new(4, 1_000).unwrap();
     for frame in 0..240 {
-        let row = [(
-            PedestrianId(1),
-            [0.12 * frame as f64, if frame < 118 { 0.0 } else { 3.0 }],
-        )];
+        let row = [(PedestrianId(1), [0.12 * frame as f64, if frame < 118 { 0.0 } else { 3.0 }])];
         let begun: &[_] = if frame == 118 { &[PedestrianId(1)] } else { &[] };
         memory.observe_begun(frame, row, begun).unwrap();
     }

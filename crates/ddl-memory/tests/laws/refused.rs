@@ -16,11 +16,7 @@ fn errors_change_nothing() {
             (last - 1, vec![other], "end those of the memory"),
             (i64::MIN, vec![other], "not below 2^53"),
             (1 << 53, vec![], "not below 2^53"),
-            (
-                last + 6,
-                vec![other, (id, here), (id, here)],
-                "pedestrian 3 is in frame",
-            ),
+            (last + 6, vec![other, (id, here), (id, here)], "pedestrian 3 is in frame"),
             (last + 6, vec![other, (id, [f64::NAN, 0.0])], "is no position"),
             (last + 6, vec![other, (id, [0.0, f64::INFINITY])], "is no position"),
         ] {
@@ -41,10 +37,7 @@ fn what_live_tracks_accept_is_accepted() {
         for frame in 0..40 {
             let here = [if frame % 10 < 8 { 0.4 * frame as f64 } else { x }, 0.0];
             let pedestrians = [(PedestrianId(1), here)];
-            assert_eq!(
-                tracks.push(frame, pedestrians).is_ok(),
-                memory.observe(frame, pedestrians).is_ok()
-            );
+            assert_eq!(tracks.push(frame, pedestrians).is_ok(), memory.observe(frame, pedestrians).is_ok());
         }
         assert!(memory.recall(&[[x; 2]; 8], None, 2).is_empty());
     }
@@ -54,10 +47,7 @@ fn what_live_tracks_accept_is_accepted() {
 fn a_memory_needs_a_step_and_a_capacity() {
     assert!(matches!(SceneMemory::new(0, 1), Err(MemoryError::Frame(_))));
     for capacity in [0, (1 << 18) + 1] {
-        assert!(matches!(
-            SceneMemory::new(1, capacity),
-            Err(MemoryError::Capacity { .. })
-        ));
+        assert!(matches!(SceneMemory::new(1, capacity), Err(MemoryError::Capacity { .. })));
     }
     let mut memory = SceneMemory::new(1 << 31, 1 << 18).unwrap();
     memory.observe(1 - (1 << 53), [(PedestrianId(1), [0.0; 2])]).unwrap();

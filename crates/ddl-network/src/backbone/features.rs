@@ -46,10 +46,6 @@ pub fn output_layer(layout: &mut Layout, config: &StarConfig) -> Linear {
     let neutral = config.variant.dynamics() && config.frame == NetworkFrame::Goal;
     let scale = if neutral { NEAR_NEUTRAL } else { 1.0 };
     let weight = Initial::Uniform { bound, scale };
-    let bias = if neutral {
-        Initial::Fixed(vec![1.0, 0.0, 1.0])
-    } else {
-        Initial::Uniform { bound, scale: 1.0 }
-    };
+    let bias = if neutral { Initial::Fixed(vec![1.0, 0.0, 1.0]) } else { Initial::Uniform { bound, scale: 1.0 } };
     layout.linear_with_initial("output_layer", [inputs, outputs], weight, bias)
 }

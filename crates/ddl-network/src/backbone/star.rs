@@ -42,22 +42,12 @@ impl Star {
         let spatial_embedding = layout.linear("input_embedding_layer_spatial", 2, width);
         let output = output_layer(layout, config);
         let fusion = layout.linear("fusion_layer", 2 * width, width);
-        Self {
-            frame: config.frame,
-            temporal_embedding,
-            spatial_embedding,
-            spatial,
-            temporal,
-            fusion,
-            output,
-        }
+        Self { frame: config.frame, temporal_embedding, spatial_embedding, spatial, temporal, fusion, output }
     }
 }
 
 fn spatial_encoder<B: Backend>(backend: &B, layers: &[EncoderLayer], x: &B::Tokens, seen: &B::Seen) -> B::Tokens {
-    layers
-        .iter()
-        .fold(x.clone(), |x, &layer| backend.spatial_attention(layer, &x, seen))
+    layers.iter().fold(x.clone(), |x, &layer| backend.spatial_attention(layer, &x, seen))
 }
 
 impl<B: Backend> Backbone<B> for Star {

@@ -79,23 +79,13 @@ pub struct VisibleScenes {
 impl KernelBackend {
     /// A pass without gradients and without dropout.
     pub(crate) fn forward_only(kernels: Arc<Kernels>) -> Self {
-        Self {
-            kernels,
-            mode: Mode::Evaluate,
-            seed: Cell::new(0),
-            tape: None,
-        }
+        Self { kernels, mode: Mode::Evaluate, seed: Cell::new(0), tape: None }
     }
 
     /// A pass whose gradient [`backward`](Self::backward) computes. `seed` determines the dropout in [`Mode::Train`].
     #[cfg(feature = "training")]
     pub fn training(kernels: Arc<Kernels>, mode: Mode, seed: u64) -> Self {
-        Self {
-            kernels,
-            mode,
-            seed: Cell::new(seed),
-            tape: Some(Tape::default()),
-        }
+        Self { kernels, mode, seed: Cell::new(seed), tape: Some(Tape::default()) }
     }
 
     /// Records a step of the backward pass. It runs after the steps recorded later, and may add to the gradients of the
@@ -150,12 +140,7 @@ impl KernelBackend {
 
     fn dropouts(&self, layer: EncoderLayer) -> Dropouts {
         let [weights, attended, hidden, fed] = [0; 4].map(|_| self.dropout(layer.dropout));
-        Dropouts {
-            weights,
-            attended,
-            hidden,
-            fed,
-        }
+        Dropouts { weights, attended, hidden, fed }
     }
 
     fn dropout(&self, p: f64) -> Option<Dropout> {
@@ -268,10 +253,8 @@ impl Backend for KernelBackend {
         let (x, cache) = (Rc::clone(newest), cache.to_vec());
         self.made(x.shape(), y, move |gy, of_weights| {
             let mut shares: Vec<_> = cache.iter().map(|token| token.gradient.take()).collect();
-            let mut of_cache: Vec<&mut CachedKeyValues> = shares
-                .iter_mut()
-                .map(|share| share.get_or_insert_with(|| CachedKeyValues::zeros(x.len())))
-                .collect();
+            let mut of_cache: Vec<&mut CachedKeyValues> =
+                shares.iter_mut().map(|share| share.get_or_insert_with(|| CachedKeyValues::zeros(x.len()))).collect();
             x.add_gradient(kernel.temporal_attention_backward(
                 &x,
                 &rows(&cache),
@@ -289,10 +272,7 @@ impl Backend for KernelBackend {
 
     fn remember(&self, layer: EncoderLayer, x: &Rc<Rows>, cache: &mut Vec<Rc<RowKeyValues>>) {
         let kernel = self.encoder(layer);
-        let cached = Rc::new(RowKeyValues {
-            rows: kernel.key_values(x),
-            gradient: RefCell::new(None),
-        });
+        let cached = Rc::new(RowKeyValues { rows: kernel.key_values(x), gradient: RefCell::new(None) });
         let (token, x) = (Rc::clone(&cached), Rc::clone(x));
         self.record_backward(move |of_weights| {
             if let Some(gradient) = token.gradient.take() {
@@ -320,11 +300,7 @@ mod tests {
 
     fn layer(dropout: f64) -> (Arc<Kernels>, EncoderLayer) {
         let mut layout = Layout::default();
-        let sizes = Sizes {
-            width: 8,
-            heads: 2,
-            hidden: 3,
-        };
+        let sizes = Sizes { width: 8, heads: 2, hidden: 3 };
         let layer = layout.encoder_layer("layer", sizes, dropout);
         let numbers = vec![0.0; layout.count()];
         let kernels = Kernels::new(&Arc::new(layout), &numbers);

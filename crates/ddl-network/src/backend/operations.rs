@@ -63,10 +63,7 @@ pub struct Memory<B: Backend> {
 
 impl<B: Backend> Default for Memory<B> {
     fn default() -> Self {
-        Self {
-            caches: Vec::new(),
-            tokens: Vec::new(),
-        }
+        Self { caches: Vec::new(), tokens: Vec::new() }
     }
 }
 

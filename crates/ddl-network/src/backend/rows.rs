@@ -28,16 +28,8 @@ impl Rows {
     /// # Panics
     /// If the count of `numbers` does not fit the shape.
     pub fn new(shape: [usize; 3], numbers: Buffer) -> Self {
-        assert_eq!(
-            numbers.len(),
-            shape.iter().product::<usize>(),
-            "number of elements of the shape {shape:?}"
-        );
-        Self {
-            shape,
-            numbers,
-            gradient: RefCell::new(None),
-        }
+        assert_eq!(numbers.len(), shape.iter().product::<usize>(), "number of elements of the shape {shape:?}");
+        Self { shape, numbers, gradient: RefCell::new(None) }
     }
 
     /// `[B, P, width]`.

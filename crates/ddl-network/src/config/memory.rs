@@ -28,15 +28,7 @@ pub struct MemoryConfig {
 
 impl Default for MemoryConfig {
     fn default() -> Self {
-        Self {
-            remembered: 12,
-            width: 64,
-            heads: 4,
-            hidden: 64,
-            layers: 1,
-            fade: 8.0,
-            half: 0.5,
-        }
+        Self { remembered: 12, width: 64, heads: 4, hidden: 64, layers: 1, fade: 8.0, half: 0.5 }
     }
 }
 
@@ -85,11 +77,7 @@ pub struct MemoryTraining {
 
 impl Default for MemoryTraining {
     fn default() -> Self {
-        Self {
-            steps: 3000,
-            partial: 0.5,
-            jitter: 0.1,
-        }
+        Self { steps: 3000, partial: 0.5, jitter: 0.1 }
     }
 }
 

@@ -171,11 +171,9 @@ impl ProposalTraining {
         let relaxed = self.relaxed_ends;
         let holds = relaxed.is_finite() && relaxed >= 1.0;
         require(holds, "relaxed_ends", &relaxed, "finite and at least 1")?;
-        for (field, value) in [
-            ("relaxed_share", self.relaxed_share),
-            ("blindness", self.blindness),
-            ("reversed", self.reversed),
-        ] {
+        for (field, value) in
+            [("relaxed_share", self.relaxed_share), ("blindness", self.blindness), ("reversed", self.reversed)]
+        {
             require((0.0..=1.0).contains(&value), field, &value, "0 to 1")?;
         }
         not_negative("waypoint_weight", self.waypoint_weight)?;
@@ -191,11 +189,7 @@ impl ProposalTraining {
     /// is the weight of the last endpoint.
     pub fn relaxed_ends_at(&self, step: u64, steps: u64) -> f64 {
         let done = step as f64 / steps as f64;
-        let left = if self.relaxed_share > 0.0 {
-            (1.0 - done / self.relaxed_share).max(0.0)
-        } else {
-            0.0
-        };
+        let left = if self.relaxed_share > 0.0 { (1.0 - done / self.relaxed_share).max(0.0) } else { 0.0 };
         1.0 + (self.relaxed_ends - 1.0) * left
     }
 }

@@ -8,15 +8,7 @@ pub(super) fn require(
     value: &dyn std::fmt::Display,
     rule: &'static str,
 ) -> Result<(), NetworkError> {
-    if holds {
-        Ok(())
-    } else {
-        Err(NetworkError::Config {
-            field,
-            value: value.to_string(),
-            rule,
-        })
-    }
+    if holds { Ok(()) } else { Err(NetworkError::Config { field, value: value.to_string(), rule }) }
 }
 
 pub(super) fn at_least_one(field: &'static str, value: u64) -> Result<(), NetworkError> {

@@ -105,11 +105,7 @@ impl StarConfig {
     /// lose no accuracy (`docs/performance.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {
-            frame: if variant.goal_shift() {
-                NetworkFrame::Goal
-            } else {
-                NetworkFrame::World
-            },
+            frame: if variant.goal_shift() { NetworkFrame::Goal } else { NetworkFrame::World },
             feed_forward_width: 32,
             spatial_layers: 1,
             ..Self::published(variant)

@@ -105,11 +105,8 @@ impl TrainingConfig {
 
     /// The training behind the protocols `fair` and `single` (`docs/tried.md`).
     pub fn recommended(variant: Variant) -> Self {
-        let (objective, jitter) = if variant.uses_goal() {
-            (Objective::Walk, 0.06)
-        } else {
-            (Objective::NextStep, 0.0)
-        };
+        let (objective, jitter) =
+            if variant.uses_goal() { (Objective::Walk, 0.06) } else { (Objective::NextStep, 0.0) };
         Self {
             objective,
             epochs: 20,
@@ -129,12 +126,7 @@ impl TrainingConfig {
     /// [`NetworkError::Config`] naming the first field that is out of range, or [`Objective::Walk`] for
     /// [`Variant::Star`], which has no goals.
     pub fn check(&self, variant: Variant) -> Result<(), NetworkError> {
-        require(
-            (1..=MOST_EPOCHS).contains(&self.epochs),
-            "epochs",
-            &self.epochs,
-            "1 to 1000000",
-        )?;
+        require((1..=MOST_EPOCHS).contains(&self.epochs), "epochs", &self.epochs, "1 to 1000000")?;
         positive("learning_rate", self.learning_rate)?;
         let jitter = self.jitter;
         not_negative("jitter", jitter)?;
@@ -163,9 +155,7 @@ mod tests {
 
     #[test]
     fn the_cosine_schedule_rises_then_falls_to_zero() {
-        let factors: Vec<f64> = (0..1000)
-            .map(|step| LearningRateSchedule::Cosine.factor(step, 1000))
-            .collect();
+        let factors: Vec<f64> = (0..1000).map(|step| LearningRateSchedule::Cosine.factor(step, 1000)).collect();
         let top = factors.iter().copied().fold(0.0, f64::max);
         assert!((top - 1.0).abs() < 1e-2 && factors[0] < 0.02 && factors[999] < 1e-4);
         let peak = factors.iter().position(|&factor| factor >= top).unwrap();

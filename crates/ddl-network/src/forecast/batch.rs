@@ -98,8 +98,7 @@ pub(super) fn batches<'a>(
         };
         let of_shares = |shares: &[Vec<f64>]| {
             let rows = shares[first..last].iter().zip(&orders);
-            rows.flat_map(|(shares, order)| order.iter().map(|&i| shares[i]))
-                .collect()
+            rows.flat_map(|(shares, order)| order.iter().map(|&i| shares[i])).collect()
         };
         batches.push(ForecastBatch {
             windows: originals.iter().zip(&origins).zip(&orders).map(ordered).collect(),

@@ -106,10 +106,7 @@ fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<
 
     let away = [(px - gx) / distance, (py - gy) / distance];
     let projected = x * away[0] + 0.0 + y * away[1];
-    let velocity = [
-        (x * projected + 0.0 + second * away[0]) * -1.0,
-        (y * projected + 0.0 + second * away[1]) * -1.0,
-    ];
+    let velocity = [(x * projected + 0.0 + second * away[0]) * -1.0, (y * projected + 0.0 + second * away[1]) * -1.0];
     let (speed, heading) = polar(velocity, &mut exact);
     let cosine = (away[0] * heading[0] + away[1] * heading[1]) * -1.0;
     let reach = distance * cosine;
@@ -182,10 +179,7 @@ fn polar<S: Simd>([x, y]: [Floats<S>; 2], exact: &mut u32) -> (Floats<S>, [Float
     let length = square.sqrt();
     // The zero vector has the direction 0.
     let none = square.simd_le(0.0);
-    (
-        length,
-        [none.select(square, x / length), none.select(square, y / length)],
-    )
+    (length, [none.select(square, x / length), none.select(square, y / length)])
 }
 
 /// The eigenvalues of a symmetric matrix, brought within the range, the larger one first; and the direction at twice
@@ -317,11 +311,7 @@ mod tests {
         for set in InstructionSet::available() {
             for done in 0..12 {
                 let mut exact = 0;
-                let time = StepTime {
-                    done,
-                    left: 12 - done,
-                    dt: 0.4,
-                };
+                let time = StepTime { done, left: 12 - done, dt: 0.4 };
                 Dispatch::new(set).unwrap().run(Usual(time, &mut exact));
                 assert_eq!(exact & 0xffff, 0xffff, "{set:?}, {done}");
             }

@@ -15,11 +15,7 @@ impl NoiseSpread {
     pub(super) fn of(weight: &[f32], inputs: usize, noise: usize) -> Self {
         let row = |i: usize| &weight[i * inputs..][inputs - noise..inputs];
         let c = |i: usize, j: usize| -> f32 { row(i).iter().zip(row(j)).map(|(a, b)| a * b).sum() };
-        Self {
-            c11: c(0, 0),
-            c12: c(0, 1),
-            c22: c(1, 1) + c(2, 2),
-        }
+        Self { c11: c(0, 0), c12: c(0, 1), c22: c(1, 1) + c(2, 2) }
     }
 
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).

@@ -27,11 +27,7 @@ impl OwnFrame {
     pub(super) fn new(last: Position, goal: Position, unit: f64) -> Self {
         let [x, y] = [goal[0] - last[0], goal[1] - last[1]];
         let distance = x.hypot(y);
-        let [cos, sin] = if distance < SMALLEST_DISTANCE {
-            [1.0, 0.0]
-        } else {
-            [x / distance, y / distance]
-        };
+        let [cos, sin] = if distance < SMALLEST_DISTANCE { [1.0, 0.0] } else { [x / distance, y / distance] };
         let [cos, sin, unit] = [cos, sin, unit].map(|x| x as f32);
         Self { cos, sin, unit }
     }

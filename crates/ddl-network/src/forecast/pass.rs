@@ -41,12 +41,7 @@ impl<'a> Pass<'a> {
         let centred = observation.centred();
         let backend = KernelBackend::forward_only(Arc::clone(&network.kernels));
         let scene = network.backbone.scene(&backend, &centred, &seen);
-        Self {
-            scene: Buffer::copy(&scene),
-            network,
-            batch,
-            observation,
-        }
+        Self { scene: Buffer::copy(&scene), network, batch, observation }
     }
 
     pub(super) fn roll_out(&self) -> BatchRollout {
@@ -98,10 +93,7 @@ impl HypothesisPart<'_> {
         let state = RolloutState::new(observation, batch, self.hypotheses.clone());
         let observed = if shared {
             let (memory, features) = self.observe(&RolloutState::new(observation, batch, 0..1));
-            (
-                memory.repeated(&self.backend, count),
-                self.backend.repeated(&features, count),
-            )
+            (memory.repeated(&self.backend, count), self.backend.repeated(&features, count))
         } else {
             self.observe(&state)
         };
@@ -156,11 +148,7 @@ impl HypothesisPart<'_> {
                 features = backbone.step(&self.backend, &mut memory, &relative, &scene, &seen);
             }
         }
-        BatchRollout {
-            hypotheses,
-            positions,
-            factors: of_factors,
-        }
+        BatchRollout { hypotheses, positions, factors: of_factors }
     }
 
     /// The scene at observed time step `t`, `[1, P, width]`.

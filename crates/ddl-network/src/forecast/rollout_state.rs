@@ -76,11 +76,7 @@ impl<'a> ObservedSteps<'a> {
         Self {
             config,
             scenes: Arc::new(visibility(&windows, OBSERVED, config.neighbour_box)),
-            entries: if config.variant.goal_shift() {
-                batch.goals.len()
-            } else {
-                1
-            },
+            entries: if config.variant.goal_shift() { batch.goals.len() } else { 1 },
             observed,
             pedestrians,
             bounds,
@@ -89,10 +85,7 @@ impl<'a> ObservedSteps<'a> {
     }
 
     pub(super) fn seen(&self, steps: Range<usize>) -> VisibleScenes {
-        VisibleScenes {
-            scenes: Arc::clone(&self.scenes),
-            steps,
-        }
+        VisibleScenes { scenes: Arc::clone(&self.scenes), steps }
     }
 
     /// Observed positions relative to the mean over the scene and all time steps so far, `[8, P, 2]`.
@@ -152,11 +145,7 @@ impl<'a> RolloutState<'a> {
         let goals: Vec<[f32; 2]> = goals.map(|goal| goal.map(|x| x as f32)).collect();
         let last = observation.at(OBSERVED - 1);
         Self {
-            references: if config.variant.goal_shift() {
-                goals.clone()
-            } else {
-                last.to_vec()
-            },
+            references: if config.variant.goal_shift() { goals.clone() } else { last.to_vec() },
             frames,
             goals,
             positions: last.repeat(count),

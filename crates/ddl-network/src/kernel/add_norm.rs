@@ -38,12 +38,7 @@ impl AddNorm {
         for column in 0..width {
             inside[column / LANES].0[column % LANES] = 1.0;
         }
-        Self {
-            width,
-            weight: vec![Lanes::ZERO; vectors],
-            bias: vec![Lanes::ZERO; vectors],
-            inside,
-        }
+        Self { width, weight: vec![Lanes::ZERO; vectors], bias: vec![Lanes::ZERO; vectors], inside }
     }
 
     pub(super) fn update(&mut self, weight: &[f32], bias: &[f32]) {

@@ -54,13 +54,7 @@ impl Affine {
         x: MatrixColumns<'_>,
         y: &mut MatrixColumnsMut<'_>,
     ) {
-        multiply::<S, R, V>(
-            simd,
-            x,
-            self.transposed.whole(),
-            (Start::Row(&self.bias), End::Unchanged),
-            y,
-        );
+        multiply::<S, R, V>(simd, x, self.transposed.whole(), (Start::Row(&self.bias), End::Unchanged), y);
     }
 
     /// W^T gy for every row. It overwrites `gx`, or is added to it if `add`.

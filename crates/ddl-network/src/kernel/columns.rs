@@ -31,12 +31,7 @@ impl<'a> MatrixColumns<'a> {
             "{count} columns of {} numbers in rows of {stride}",
             numbers.len()
         );
-        Self {
-            numbers,
-            rows: numbers.len() / stride,
-            stride,
-            count,
-        }
+        Self { numbers, rows: numbers.len() / stride, stride, count }
     }
 
     #[inline(always)]
@@ -70,11 +65,7 @@ pub(super) fn load<S: Simd>(simd: S, row: &[f32], first: usize) -> Floats<S> {
 /// accumulators from registers to memory, even if it is never made.
 #[inline(always)]
 pub(super) fn load_as<S: Simd, const WHOLE: bool>(simd: S, row: &[f32], first: usize) -> Floats<S> {
-    if WHOLE {
-        simd.load(row[first..].first_chunk().expect("a whole vector"))
-    } else {
-        load(simd, row, first)
-    }
+    if WHOLE { simd.load(row[first..].first_chunk().expect("a whole vector")) } else { load(simd, row, first) }
 }
 
 /// Writes sixteen numbers to a row from `first`; drops those beyond its end.

@@ -32,10 +32,7 @@ impl Dropout {
         assert!((0.0..1.0).contains(&p), "dropout of {p}: not in [0, 1)");
         let values = f64::from(1_u32 << bits);
         let dropped = (p * values).round().min(values - 1.0);
-        (dropped > 0.0).then(|| Threshold {
-            least: dropped as u32,
-            scale: (values / (values - dropped)) as f32,
-        })
+        (dropped > 0.0).then(|| Threshold { least: dropped as u32, scale: (values / (values - dropped)) as f32 })
     }
 }
 
@@ -66,9 +63,7 @@ impl RowKey {
 
 /// The finaliser of `SplitMix64` (Steele et al. 2014) after a step of its counter.
 pub(super) fn mixed(word: u64) -> u64 {
-    let word = word
-        .wrapping_mul(0x9e37_79b9_7f4a_7c15)
-        .wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let word = word.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(0x9e37_79b9_7f4a_7c15);
     let word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     word ^ (word >> 31)

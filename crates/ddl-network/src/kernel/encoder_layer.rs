@@ -31,11 +31,7 @@ impl EncoderKernel {
         let inputs = [&query[..], &key, &value];
         let attended = self.attention.spatial_forward(inputs, frames, dropouts.weights, keep);
         let newest = CachedKeyValues { key, value };
-        let attention = AttentionResults {
-            query,
-            newest,
-            attended,
-        };
+        let attention = AttentionResults { query, newest, attended };
         self.after_attention(x, attention, dropouts, keep)
     }
 
@@ -56,8 +52,7 @@ impl EncoderKernel {
         let inputs = [&kept.query[..], &kept.newest.key, &kept.newest.value];
         let mut of_inputs = [0; 3].map(|_| Buffer::any(x.len()));
         let gradients = of_inputs.each_mut().map(|gradient| &mut gradient[..]);
-        self.attention
-            .spatial_backward(inputs, frames, dropouts.weights, &kept.attended, &of_mixed, gradients);
+        self.attention.spatial_backward(inputs, frames, dropouts.weights, &kept.attended, &of_mixed, gradients);
         let of_inputs = of_inputs.each_ref().map(|gradient| &gradient[..]);
         self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx
@@ -76,16 +71,8 @@ impl EncoderKernel {
         let [query, key, value] = self.project(0, x);
         let newest = CachedKeyValues { key, value };
         let mut mixed = Buffer::any(x.len());
-        self.attention
-            .temporal_forward(&query, &views(cache), newest.view(), &mut mixed);
-        let attention = AttentionResults {
-            query,
-            newest,
-            attended: Attended {
-                mixed,
-                normalisers: Vec::new(),
-            },
-        };
+        self.attention.temporal_forward(&query, &views(cache), newest.view(), &mut mixed);
+        let attention = AttentionResults { query, newest, attended: Attended { mixed, normalisers: Vec::new() } };
         self.after_attention(x, attention, dropouts, keep)
     }
 
@@ -109,8 +96,7 @@ impl EncoderKernel {
         let mut of_newest = CachedKeyValues::zeros(x.len());
         let of_cache = of_cache.iter_mut().map(|token| token.view_mut());
         let of_tokens = of_cache.chain([of_newest.view_mut()]).collect();
-        self.attention
-            .temporal_backward(query, &views(cache), newest.view(), &of_mixed, &mut of_query, of_tokens);
+        self.attention.temporal_backward(query, &views(cache), newest.view(), &of_mixed, &mut of_query, of_tokens);
         let of_inputs = [&of_query[..], &of_newest.key, &of_newest.value];
         self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx

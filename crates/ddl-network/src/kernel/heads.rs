@@ -24,10 +24,7 @@ pub(crate) struct AttentionKernel {
 
 impl AttentionKernel {
     pub(crate) fn new(heads: usize) -> Self {
-        Self {
-            heads: Heads::new(heads),
-            dispatch: Dispatch::detect(),
-        }
+        Self { heads: Heads::new(heads), dispatch: Dispatch::detect() }
     }
 }
 

@@ -19,10 +19,7 @@ pub(crate) struct LinearKernel {
 
 impl LinearKernel {
     pub(crate) fn zeros(inputs: usize, outputs: usize) -> Self {
-        Self {
-            map: Affine::new(inputs, outputs),
-            dispatch: Dispatch::detect(),
-        }
+        Self { map: Affine::new(inputs, outputs), dispatch: Dispatch::detect() }
     }
 
     /// Replaces the weights: W `[outputs, inputs]`, row-major, then b.
@@ -110,7 +107,6 @@ impl TiledKernel for LinearBackward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
         self.map.backward::<S, R, V>(simd, self.gy, &mut self.gx, false);
-        self.map
-            .add_gradients::<S, R, V>(simd, self.x, self.gy, self.of_weights);
+        self.map.add_gradients::<S, R, V>(simd, self.x, self.gy, self.of_weights);
     }
 }

@@ -43,10 +43,7 @@ pub(super) enum End {
 
 impl Matrix {
     pub(super) fn zeros(rows: usize, columns: usize) -> Self {
-        Self {
-            rows,
-            pairs: vec![[Lanes::ZERO; 2]; rows * columns.div_ceil(BLOCK)],
-        }
+        Self { rows, pairs: vec![[Lanes::ZERO; 2]; rows * columns.div_ceil(BLOCK)] }
     }
 
     pub(super) fn set(&mut self, row: usize, column: usize, value: f32) {
@@ -55,31 +52,19 @@ impl Matrix {
     }
 
     pub(super) fn whole(&self) -> MatrixPart<'_> {
-        MatrixPart {
-            pairs: &self.pairs,
-            rows_of_whole: self.rows,
-            first: 0,
-            count: self.rows,
-        }
+        MatrixPart { pairs: &self.pairs, rows_of_whole: self.rows, first: 0, count: self.rows }
     }
 
     /// All rows of 32 columns.
     #[inline(always)]
     pub(super) fn block(&self, block: usize) -> MatrixPart<'_> {
-        MatrixPart {
-            pairs: &self.pairs[block * self.rows..][..self.rows],
-            ..self.whole()
-        }
+        MatrixPart { pairs: &self.pairs[block * self.rows..][..self.rows], ..self.whole() }
     }
 
     /// `count` rows from `first` on.
     #[inline(always)]
     pub(super) fn rows(&self, first: usize, count: usize) -> MatrixPart<'_> {
-        MatrixPart {
-            first,
-            count,
-            ..self.whole()
-        }
+        MatrixPart { first, count, ..self.whole() }
     }
 }
 

@@ -42,12 +42,7 @@ pub(super) trait Quads: Simd {
     #[inline(always)]
     fn read_twice(self, half: &HalfQuad) -> Vectors<Self> {
         let [a, b, c, d] = &half.0;
-        [
-            self.load_halves(a, a),
-            self.load_halves(b, b),
-            self.load_halves(c, c),
-            self.load_halves(d, d),
-        ]
+        [self.load_halves(a, a), self.load_halves(b, b), self.load_halves(c, c), self.load_halves(d, d)]
     }
 
     /// Writes the lower and the upper lanes of four vectors.

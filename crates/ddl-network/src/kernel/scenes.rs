@@ -73,10 +73,7 @@ impl Scenes {
     /// pedestrian does not see itself. If indices are not ascending or not in the scene.
     pub(crate) fn new(sizes: &[usize], seen: impl IntoIterator<Item = Vec<u32>>) -> Self {
         assert!(!sizes.is_empty(), "at least one scene is needed");
-        assert!(
-            sizes.iter().all(|&size| size > 0),
-            "a scene has at least one pedestrian: {sizes:?}"
-        );
+        assert!(sizes.iter().all(|&size| size > 0), "a scene has at least one pedestrian: {sizes:?}");
         let mut ranges = Vec::with_capacity(sizes.len());
         let (mut pedestrians, mut starts) = (0, vec![0]);
         for size in sizes {
@@ -84,13 +81,7 @@ impl Scenes {
             pedestrians += size;
             starts.push(starts[starts.len() - 1] + size.div_ceil(2));
         }
-        let mut scenes = Self {
-            ranges,
-            frames: 0,
-            seen: Vec::new(),
-            ends: Vec::new(),
-            starts,
-        };
+        let mut scenes = Self { ranges, frames: 0, seen: Vec::new(), ends: Vec::new(), starts };
         let mut lists = seen.into_iter().peekable();
         while lists.peek().is_some() {
             for &size in sizes {
@@ -171,16 +162,8 @@ impl Scenes {
     /// # Panics
     /// If the range is empty or a frame does not exist.
     pub(crate) fn during(&self, frames: Range<usize>) -> Frames<'_> {
-        assert!(
-            frames.start < frames.end && frames.end <= self.frames,
-            "frames {frames:?} of {}",
-            self.frames
-        );
-        Frames {
-            scenes: self,
-            first: frames.start,
-            count: frames.len(),
-        }
+        assert!(frames.start < frames.end && frames.end <= self.frames, "frames {frames:?} of {}", self.frames);
+        Frames { scenes: self, first: frames.start, count: frames.len() }
     }
 
     #[cfg(test)]

@@ -49,23 +49,17 @@ impl AttentionKernel {
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
         let normalisers = if keep { entries * self.normalisers(frames) } else { 0 };
-        let mut attended = Attended {
-            mixed: Buffer::any(rows * row),
-            normalisers: vec![[Lanes::ZERO; 2]; normalisers],
-        };
+        let mut attended =
+            Attended { mixed: Buffer::any(rows * row), normalisers: vec![[Lanes::ZERO; 2]; normalisers] };
         let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
         let mut jobs = Vec::new();
         let groups = self.heads.groups();
         for (inputs, task) in self.tasks(inputs, frames, dropout) {
-            jobs.extend(task.blocks().map(|task| {
-                SceneForward {
-                    inputs,
-                    mixed: mixed.split_off_mut(..task.queries().len() * row).unwrap_or_default(),
-                    normalisers: normalisers
-                        .split_off_mut(..task.twos.len() * groups)
-                        .unwrap_or_default(),
-                    task,
-                }
+            jobs.extend(task.blocks().map(|task| SceneForward {
+                inputs,
+                mixed: mixed.split_off_mut(..task.queries().len() * row).unwrap_or_default(),
+                normalisers: normalisers.split_off_mut(..task.twos.len() * groups).unwrap_or_default(),
+                task,
             }));
         }
         let work = self.work(frames, entries);
@@ -103,13 +97,9 @@ impl AttentionKernel {
             jobs.push(SceneBackward {
                 inputs,
                 mixed: mixed.split_off(..numbers).unwrap_or_default(),
-                normalisers: normalisers
-                    .split_off(..task.twos.len() * self.heads.groups())
-                    .unwrap_or_default(),
+                normalisers: normalisers.split_off(..task.twos.len() * self.heads.groups()).unwrap_or_default(),
                 mixed_gradient: mixed_gradient.split_off(..numbers).unwrap_or_default(),
-                gradients: gradients
-                    .each_mut()
-                    .map(|gradient| gradient.split_off_mut(..numbers).unwrap_or_default()),
+                gradients: gradients.each_mut().map(|gradient| gradient.split_off_mut(..numbers).unwrap_or_default()),
                 task,
             });
         }

@@ -44,13 +44,7 @@ impl AttentionKernel {
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
         let chunks = mixed.chunks_mut(chunk).enumerate();
-        let jobs = chunks.map(|(i, mixed)| TemporalForward {
-            first: i * chunk,
-            query,
-            cache,
-            newest,
-            mixed,
-        });
+        let jobs = chunks.map(|(i, mixed)| TemporalForward { first: i * chunk, query, cache, newest, mixed });
         run_each(self.dispatch, jobs, work(query, cache));
     }
 

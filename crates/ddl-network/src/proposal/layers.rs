@@ -28,13 +28,7 @@ impl MemberAffine {
         let bound = gain * (6.0 / inputs as f64).sqrt();
         let tensor = layout.uniform(format!("{name}.weight"), &[members, inputs, outputs], bound);
         layout.constant(format!("{name}.bias"), &[members, 1, outputs], 0.0);
-        Self {
-            tensor,
-            first,
-            members,
-            inputs,
-            outputs,
-        }
+        Self { tensor, first, members, inputs, outputs }
     }
 
     /// The ranges of a member's weight `[inputs, outputs]` and bias among all weights.
@@ -144,12 +138,7 @@ impl ProposalLayers {
     pub fn new(layout: &mut Layout, config: &ProposalConfig) -> Self {
         let [members, ends, width, near] =
             [config.members, config.ends, config.width, config.neighbour_width].map(|n| n as usize);
-        let mut declaring = Declaring {
-            layout,
-            members,
-            ends,
-            width,
-        };
+        let mut declaring = Declaring { layout, members, ends, width };
         let own_features = OBSERVED * 2 + (OBSERVED - 1) * 2;
         Self {
             own: declaring.affine("own", [own_features, width], 1.0),

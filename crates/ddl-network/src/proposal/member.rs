@@ -76,10 +76,7 @@ impl MemberKernels {
             let context = attention.attend(&hidden, &remembered.others);
             let support = remembered.support.iter().copied();
             let mut offsets = readout.read(&readout.hidden_layer(hidden, &context, support));
-            for (offsets, base) in [
-                (&mut offsets.ends, &readings.ends),
-                (&mut offsets.logits, &readings.logits),
-            ] {
+            for (offsets, base) in [(&mut offsets.ends, &readings.ends), (&mut offsets.logits, &readings.logits)] {
                 let base = rows_of(base, &remembered.of, seen.onward.len());
                 for (offset, base) in offsets.iter_mut().zip(base.iter()) {
                     *offset += base;
@@ -120,10 +117,7 @@ impl ReadoutKernels {
     }
 
     fn read(&self, hidden: &Buffer) -> Readings {
-        Readings {
-            ends: self.ends.forward(hidden),
-            logits: self.logits.forward(hidden),
-        }
+        Readings { ends: self.ends.forward(hidden), logits: self.logits.forward(hidden) }
     }
 }
 

@@ -52,37 +52,26 @@ impl ProposalNetwork {
         weights.check_layout(&layout)?;
         let members = 0..config.members as usize;
         let members = members.map(|member| MemberKernels::new(&config, &layers, &weights, member));
-        Ok(Self {
-            members: members.collect(),
-            config,
-            weights,
-        })
+        Ok(Self { members: members.collect(), config, weights })
     }
 
     fn propose_chunk(&self, views: &[PedestrianView]) -> Vec<ProposedEndpoints> {
         let seen = SeenRows::of(views, &self.config);
         let memory = self.config.memory.as_ref();
-        let remembered = memory.map_or_else(RememberedRows::default, |memory| {
-            RememberedRows::of(views, memory, self.config.time_step)
-        });
+        let remembered = memory
+            .map_or_else(RememberedRows::default, |memory| RememberedRows::of(views, memory, self.config.time_step));
         let mut shares = vec![1.0; views.len()];
         for (&index, share) in remembered.of.iter().zip(&remembered.shares) {
             shares[index] -= share;
         }
-        let none = ProposedEndpoints {
-            endpoints: Vec::new(),
-            weights: Vec::new(),
-        };
+        let none = ProposedEndpoints { endpoints: Vec::new(), weights: Vec::new() };
         let mut proposed = vec![none; views.len()];
         let mut add = |index: usize, share: f64, (ends, logits): (&[f32], &[f32])| {
             let onward = seen.onward[index];
             let (offsets, _) = ends.as_chunks::<2>();
-            let places = offsets.iter().map(|&[x, y]| {
-                [
-                    f64::from(x) * ENDPOINT_UNIT + onward[0],
-                    f64::from(y) * ENDPOINT_UNIT + onward[1],
-                ]
-            });
+            let places = offsets
+                .iter()
+                .map(|&[x, y]| [f64::from(x) * ENDPOINT_UNIT + onward[0], f64::from(y) * ENDPOINT_UNIT + onward[1]]);
             proposed[index].endpoints.extend(places);
             let largest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
             let powers = logits.iter().map(|&logit| f64::from(logit - largest).exp());

@@ -172,18 +172,14 @@ pub fn read_tensors(path: &Path, most_bytes: u64, origin: &Origin) -> Result<Vec
     let size = std::fs::metadata(path).map_err(io)?.len();
     let most = most_bytes.saturating_add(HEADER_BYTES);
     if size > most {
-        return Err(bad(format!(
-            "is {size} bytes long, but its numbers have at most {most_bytes} bytes"
-        )));
+        return Err(bad(format!("is {size} bytes long, but its numbers have at most {most_bytes} bytes")));
     }
     let mut bytes = Vec::new();
     // A special file may hold more than the size it reports.
     let file = std::fs::File::open(path).map_err(io)?;
     file.take(most).read_to_end(&mut bytes).map_err(io)?;
     let broken = |error: safetensors::SafeTensorError| {
-        bad(format!(
-            "is not a complete safetensors file ({error}); delete it and run the same training again"
-        ))
+        bad(format!("is not a complete safetensors file ({error}); delete it and run the same training again"))
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
     let (of_file, digest) = Origin::from_header(header.metadata().as_ref());
@@ -207,16 +203,10 @@ pub fn read_tensors(path: &Path, most_bytes: u64, origin: &Origin) -> Result<Vec
                     TensorData::Double(numbers.iter().map(|&b| f64::from_le_bytes(b)).collect())
                 }
                 other => {
-                    return Err(bad(format!(
-                        "{name} has the type {other:?}, expected 32- or 64-bit floats"
-                    )));
+                    return Err(bad(format!("{name} has the type {other:?}, expected 32- or 64-bit floats")));
                 }
             };
-            Ok(StoredTensor {
-                name: name.to_owned(),
-                shape: view.shape().to_vec(),
-                numbers,
-            })
+            Ok(StoredTensor { name: name.to_owned(), shape: view.shape().to_vec(), numbers })
         })
         .collect()
 }

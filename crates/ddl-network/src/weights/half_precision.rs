@@ -98,10 +98,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn weights() -> Weights {
-        let config = StarConfig {
-            feed_forward_width: 8,
-            ..StarConfig::published(Variant::Full)
-        };
+        let config = StarConfig { feed_forward_width: 8, ..StarConfig::published(Variant::Full) };
         MotionNetwork::new(config, 1).unwrap().copy_weights().unwrap()
     }
 

@@ -166,13 +166,7 @@ impl Layout {
         let first = self.count;
         let tensor = self.tensor(format!("{name}.weight"), &[outputs, inputs], weight);
         self.tensor(format!("{name}.bias"), &[outputs], bias);
-        let linear = Linear {
-            number: self.linears.len(),
-            tensor,
-            first,
-            inputs,
-            outputs,
-        };
+        let linear = Linear { number: self.linears.len(), tensor, first, inputs, outputs };
         self.linears.push(linear);
         linear
     }
@@ -190,11 +184,7 @@ impl Layout {
         let mut affine = |name: String, inputs: usize, outputs: usize, zero_bias: bool| {
             let bound = 1.0 / (inputs as f64).sqrt();
             self.uniform(format!("{name}.weight"), &[outputs, inputs], bound);
-            let bias = if zero_bias {
-                Initial::Constant(0.0)
-            } else {
-                Initial::Uniform { bound, scale: 1.0 }
-            };
+            let bias = if zero_bias { Initial::Constant(0.0) } else { Initial::Uniform { bound, scale: 1.0 } };
             self.tensor(format!("{name}.bias"), &[outputs], bias);
         };
         affine(format!("{name}.self_attn.out_proj"), width, width, true);
@@ -204,13 +194,7 @@ impl Layout {
             self.constant(format!("{name}.{norm}.weight"), &[width], 1.0);
             self.constant(format!("{name}.{norm}.bias"), &[width], 0.0);
         }
-        let layer = EncoderLayer {
-            number: self.encoder_layers.len(),
-            tensor,
-            first,
-            sizes,
-            dropout,
-        };
+        let layer = EncoderLayer { number: self.encoder_layers.len(), tensor, first, sizes, dropout };
         self.encoder_layers.push(layer);
         layer
     }
@@ -230,11 +214,7 @@ impl Layout {
                 }
                 Initial::Uniform { bound, scale } => numbers.extend((0..count).map(|_| {
                     let drawn = bound * (2.0 * rng.random::<f64>() - 1.0);
-                    if (scale - 1.0).abs() < f64::EPSILON {
-                        drawn
-                    } else {
-                        f64::from(drawn as f32 * *scale as f32)
-                    }
+                    if (scale - 1.0).abs() < f64::EPSILON { drawn } else { f64::from(drawn as f32 * *scale as f32) }
                 })),
             }
         }

@@ -41,11 +41,7 @@ impl Origin {
     /// numbers, if the header has it.
     pub fn from_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
         let facts = header.and_then(|header| header.get(HEADER));
-        let mut origin = Self(
-            facts
-                .and_then(|facts| serde_json::from_str(facts).ok())
-                .unwrap_or_default(),
-        );
+        let mut origin = Self(facts.and_then(|facts| serde_json::from_str(facts).ok()).unwrap_or_default());
         let digest = origin.0.remove(DIGEST);
         (origin, digest)
     }

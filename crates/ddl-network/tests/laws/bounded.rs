@@ -96,10 +96,7 @@ fn factors_reproduce_the_steps() {
         let network = MotionNetwork::new(config.clone(), 5).unwrap();
         for rule in [StepRule::Euler, StepRule::Bounded] {
             let mut compared = 0;
-            let question = Question {
-                rule,
-                ..Question::bounded(3)
-            };
+            let question = Question { rule, ..Question::bounded(3) };
             for (window, rollout) in windows.iter().zip(question.ask(&network, &windows)) {
                 let goals = goals(window, 3);
                 let factors = rollout.factors.unwrap();

@@ -12,9 +12,8 @@ fn furthest(backbone: BackboneKind) -> [f64; 2] {
     let (mut first, mut any) = (0.0_f64, 0.0_f64);
     for window in WINDOWS.iter().take(12).filter(|window| window.len() > 1) {
         let together = &question.ask(&network, &[window])[0];
-        let alone: Vec<Window> = (0..window.len())
-            .map(|i| window.filter_pedestrians(|other| other == i).unwrap())
-            .collect();
+        let alone: Vec<Window> =
+            (0..window.len()).map(|i| window.filter_pedestrians(|other| other == i).unwrap()).collect();
         let alone: Vec<&Window> = alone.iter().collect();
         let alone = question.ask(&network, &alone).into_iter();
         for (i, (alone, together)) in alone.zip(together.positions.chunks(2 * HORIZON)).enumerate() {

@@ -18,9 +18,7 @@ fn off(config: StarConfig, window: &Window, moved: impl Fn(Position) -> Position
         rollouts.unwrap().remove(0).positions
     };
     let pairs = forecast(&|p| p).into_iter().zip(forecast(&moved));
-    pairs
-        .map(|(here, there)| distance(moved(here), there))
-        .fold(0.0, f64::max)
+    pairs.map(|(here, there)| distance(moved(here), there)).fold(0.0, f64::max)
 }
 
 proptest! {

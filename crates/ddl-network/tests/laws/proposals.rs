@@ -12,13 +12,7 @@ fn network(config: ProposalConfig) -> ProposalNetwork {
 }
 
 fn small() -> ProposalConfig {
-    ProposalConfig {
-        members: 2,
-        ends: 6,
-        width: 32,
-        neighbour_width: 16,
-        ..ProposalConfig::default()
-    }
+    ProposalConfig { members: 2, ends: 6, width: 32, neighbour_width: 16, ..ProposalConfig::default() }
 }
 
 fn seen(window: &Window, i: usize) -> PedestrianView {
@@ -30,19 +24,13 @@ fn seen(window: &Window, i: usize) -> PedestrianView {
         })
     };
     let others = (0..window.len()).filter(|&j| j != i);
-    PedestrianView {
-        own: relative(i),
-        neighbours: others.map(relative).collect(),
-        remembered: Vec::new(),
-    }
+    PedestrianView { own: relative(i), neighbours: others.map(relative).collect(), remembered: Vec::new() }
 }
 
 /// All pedestrians of all windows but the crowd: more than one batch, and some of them alone.
 static VIEWS: LazyLock<Vec<PedestrianView>> = LazyLock::new(|| {
     let windows = WINDOWS[..WINDOWS.len() - 1].iter();
-    let mut views: Vec<_> = windows
-        .flat_map(|window| (0..window.len()).map(|i| seen(window, i)))
-        .collect();
+    let mut views: Vec<_> = windows.flat_map(|window| (0..window.len()).map(|i| seen(window, i))).collect();
     views.extend([0.0, 1.0, 1.6].map(|speed| view(speed, 0)));
     for (i, view) in views.iter_mut().enumerate() {
         view.remembered = (0..i % 15).map(|j| earlier(0.3 * j as f64)).collect();
@@ -56,9 +44,7 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
     let walk = |speed: f64, x: f64, y: f64| std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y]);
     PedestrianView {
         own: walk(speed, 0.0, 0.0),
-        neighbours: (0..neighbours)
-            .map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64))
-            .collect(),
+        neighbours: (0..neighbours).map(|j| walk(-0.8, 2.0 + j as f64, 0.3 * j as f64)).collect(),
         remembered: Vec::new(),
     }
 }
@@ -66,10 +52,7 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
 /// An earlier pedestrian at 1 m/s, `aside` metres to the left.
 fn earlier(aside: f64) -> RememberedTrack {
     let track: [Position; WINDOW] = std::array::from_fn(|t| [0.4 * (t as f64 - 7.0), aside]);
-    RememberedTrack {
-        track,
-        distance: aside * aside,
-    }
+    RememberedTrack { track, distance: aside * aside }
 }
 
 fn bits(proposed: &ProposedEndpoints) -> Vec<u64> {

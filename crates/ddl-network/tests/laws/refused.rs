@@ -10,10 +10,7 @@ use ddl_network::{
 type Goals = Vec<Vec<Position>>;
 
 fn network(variant: Variant) -> MotionNetwork {
-    let config = StarConfig {
-        feed_forward_width: 16,
-        ..StarConfig::published(variant)
-    };
+    let config = StarConfig { feed_forward_width: 16, ..StarConfig::published(variant) };
     MotionNetwork::new(config, 5).unwrap()
 }
 
@@ -83,30 +80,20 @@ fn configurations_out_of_range_are_refused() {
             (|c| c.spatial_layers = 65, "1 to 64"),
             (|c| c.spatial_dropout = 1.0, "in [0, 1)"),
             (|c| c.sigma = 0.0, "sigma"),
-            (
-                |c| (c.variant, c.frame) = (Variant::NoGoalShift, NetworkFrame::Goal),
-                "frame",
-            ),
+            (|c| (c.variant, c.frame) = (Variant::NoGoalShift, NetworkFrame::Goal), "frame"),
         ],
     );
     check_all(
         &TrainingConfig::published(),
         |config| config.check(Variant::Full),
-        &[
-            (|c| c.epochs = usize::MAX, "epochs"),
-            (|c| c.learning_rate = f64::NAN, "learning_rate"),
-        ],
+        &[(|c| c.epochs = usize::MAX, "epochs"), (|c| c.learning_rate = f64::NAN, "learning_rate")],
     );
     check_all(
         &ProposalConfig::default(),
         ProposalConfig::check,
         &[(|c| c.heads = 3, "heads"), (|c| c.heads = 0, "heads")],
     );
-    check_all(
-        &ProposalTraining::default(),
-        ProposalTraining::check,
-        &[(|c| c.turn = f64::NAN, "turn")],
-    );
+    check_all(&ProposalTraining::default(), ProposalTraining::check, &[(|c| c.turn = f64::NAN, "turn")]);
     let headless = StarConfig { heads: 0, ..published };
     MotionNetwork::new(headless, 1).unwrap_err();
 }

@@ -18,12 +18,7 @@ fn questions() -> impl Strategy<Value = Question> {
         (1..4_usize, any::<u64>()).prop_map(|(count, seed)| (1, Noise::Draws { count, seed })),
     ];
     let rule = prop_oneof![Just(StepRule::Euler), Just(StepRule::Bounded)];
-    (noise, rule, any::<bool>()).prop_map(|((goals, noise), rule, shared)| Question {
-        goals,
-        noise,
-        rule,
-        shared,
-    })
+    (noise, rule, any::<bool>()).prop_map(|((goals, noise), rule, shared)| Question { goals, noise, rule, shared })
 }
 
 proptest! {

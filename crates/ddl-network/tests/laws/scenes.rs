@@ -15,9 +15,7 @@ pub(crate) static WINDOWS: LazyLock<Vec<Window>> = LazyLock::new(|| {
         .flat_map(|recording| recording.windows(WindowRule::Complete).into_iter().step_by(23))
         .take(30)
         .collect();
-    let tracks = windows
-        .iter()
-        .flat_map(|window| (0..window.len()).map(|i| window.track(i)));
+    let tracks = windows.iter().flat_map(|window| (0..window.len()).map(|i| window.track(i)));
     let tracks: Vec<Vec<Position>> = tracks.take(150).map(<[Position]>::to_vec).collect();
     assert_eq!(tracks.len(), 150);
     let pedestrians = (0..).take(150).map(PedestrianId).collect();
@@ -31,9 +29,7 @@ pub(crate) fn goals(window: &Window, count: usize) -> Vec<Vec<Position>> {
         let (sin, cos) = (2.0 * k as f64).sin_cos();
         [x + 1.5 * k as f64 * cos, y + 1.5 * k as f64 * sin]
     };
-    (0..window.len())
-        .map(|i| (0..count).map(|k| around(window.end(i).unwrap(), k)).collect())
-        .collect()
+    (0..window.len()).map(|i| (0..count).map(|k| around(window.end(i).unwrap(), k)).collect()).collect()
 }
 
 /// Shares from 0 to 1, a function of the window.
@@ -51,12 +47,7 @@ pub(crate) struct Question {
 
 impl Question {
     pub(crate) fn bounded(goals: usize) -> Self {
-        Self {
-            goals,
-            noise: Noise::Expected,
-            rule: StepRule::Bounded,
-            shared: false,
-        }
+        Self { goals, noise: Noise::Expected, rule: StepRule::Bounded, shared: false }
     }
 
     pub(crate) fn ask(self, network: &MotionNetwork, windows: &[&Window]) -> Vec<WindowRollout> {
@@ -64,9 +55,7 @@ impl Question {
         let goals: Vec<_> = windows.iter().map(|window| goals(window, self.goals)).collect();
         let shares: Vec<_> = windows.iter().map(|window| shares(window)).collect();
         let shares = self.shared.then_some(&shares[..]);
-        network
-            .forecast_windows(&observed, &goals, self.noise, self.rule, shares)
-            .unwrap()
+        network.forecast_windows(&observed, &goals, self.noise, self.rule, shares).unwrap()
     }
 }
 
@@ -75,11 +64,7 @@ pub(crate) fn configs() -> Vec<StarConfig> {
     for backbone in BackboneKind::ALL {
         for variant in Variant::ALL {
             for config in [StarConfig::published(variant), StarConfig::recommended(variant)] {
-                configs.push(StarConfig {
-                    backbone,
-                    feed_forward_width: 64,
-                    ..config
-                });
+                configs.push(StarConfig { backbone, feed_forward_width: 64, ..config });
             }
         }
     }
@@ -87,10 +72,7 @@ pub(crate) fn configs() -> Vec<StarConfig> {
 }
 
 pub(crate) fn recommended(backbone: BackboneKind, variant: Variant) -> StarConfig {
-    StarConfig {
-        backbone,
-        ..StarConfig::recommended(variant)
-    }
+    StarConfig { backbone, ..StarConfig::recommended(variant) }
 }
 
 pub(crate) fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {

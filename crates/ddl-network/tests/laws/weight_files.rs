@@ -12,10 +12,7 @@ use safetensors::tensor::{Dtype, TensorView};
 use std::path::Path;
 
 fn network(variant: Variant, seed: u64) -> MotionNetwork {
-    let config = StarConfig {
-        feed_forward_width: 64,
-        ..StarConfig::published(variant)
-    };
+    let config = StarConfig { feed_forward_width: 64, ..StarConfig::published(variant) };
     MotionNetwork::new(config, seed).unwrap()
 }
 
@@ -117,10 +114,7 @@ fn files_of_another_network_or_run_are_refused() {
     let network = network(Variant::Full, 1);
     let shape = "output_layer.weight has shape";
     refuse(&saved(&weights(Variant::Star, 2), &origin()), shape);
-    let shallow = StarConfig {
-        spatial_layers: 1,
-        ..network.config().clone()
-    };
+    let shallow = StarConfig { spatial_layers: 1, ..network.config().clone() };
     let shallow = MotionNetwork::new(shallow, 1).unwrap().copy_weights().unwrap();
     refuse(&saved(&shallow, &origin()), "it was written for another configuration");
     let elsewhere = Origin::from_iter([("fold", "plaza"), ("seed", "7")]);
@@ -132,11 +126,7 @@ fn files_of_another_network_or_run_are_refused() {
 }
 
 fn double(shape: &[usize], numbers: Vec<f64>) -> StoredTensor {
-    StoredTensor {
-        name: "moments".to_owned(),
-        shape: shape.to_vec(),
-        numbers: TensorData::Double(numbers),
-    }
+    StoredTensor { name: "moments".to_owned(), shape: shape.to_vec(), numbers: TensorData::Double(numbers) }
 }
 
 #[test]

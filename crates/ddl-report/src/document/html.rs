@@ -96,9 +96,7 @@ fn of_table(table: &Table) -> Markup {
 
 /// Text whose words between backticks are code.
 pub(crate) fn inline(text: &str) -> Markup {
-    let code = text
-        .split_once('`')
-        .and_then(|(before, rest)| Some((before, rest.split_once('`')?)));
+    let code = text.split_once('`').and_then(|(before, rest)| Some((before, rest.split_once('`')?)));
     html! {
         @match code {
             Some((before, (code, after))) => { (before) code { (code) } (inline(after)) }
@@ -108,9 +106,7 @@ pub(crate) fn inline(text: &str) -> Markup {
 }
 
 fn identifier(words: &str) -> String {
-    let words = words
-        .split(|c: char| !c.is_ascii_alphanumeric())
-        .filter(|word| !word.is_empty());
+    let words = words.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-").to_ascii_lowercase()
 }
 

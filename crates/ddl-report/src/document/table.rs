@@ -15,12 +15,7 @@ impl Table {
     pub(crate) fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
         let header: Vec<_> = header.into_iter().map(Into::into).collect();
         let text = (0..header.len()).map(|column| column == 0).collect();
-        Self {
-            caption: None,
-            header,
-            text,
-            rows: Vec::new(),
-        }
+        Self { caption: None, header, text, rows: Vec::new() }
     }
 
     /// A table with columns of text, a column for each fold, and further columns.
@@ -41,10 +36,7 @@ impl Table {
     /// Adds a caption, which should name the data convention, the unit and what was averaged.
     #[must_use]
     pub(crate) fn captioned(self, caption: impl Into<String>) -> Self {
-        Self {
-            caption: Some(caption.into()),
-            ..self
-        }
+        Self { caption: Some(caption.into()), ..self }
     }
 
     /// Whether a column is text, and not numbers.
@@ -70,9 +62,7 @@ fn escape(cell: &str) -> String {
 impl std::fmt::Display for Table {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let lines = std::iter::once(&self.header).chain(&self.rows);
-        let lines: Vec<Vec<String>> = lines
-            .map(|cells| cells.iter().map(|cell| escape(cell)).collect())
-            .collect();
+        let lines: Vec<Vec<String>> = lines.map(|cells| cells.iter().map(|cell| escape(cell)).collect()).collect();
         let longest = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
         let widths: Vec<usize> = if f.alternate() {
             vec![0; self.header.len()]
@@ -92,12 +82,7 @@ impl std::fmt::Display for Table {
             if number == 0 {
                 // The line under the header sets the alignment of the columns.
                 for (&width, text) in columns() {
-                    write!(
-                        f,
-                        "|{:->length$}",
-                        if *text { "-" } else { ":" },
-                        length = width.max(1) + 2
-                    )?;
+                    write!(f, "|{:->length$}", if *text { "-" } else { ":" }, length = width.max(1) + 2)?;
                 }
                 writeln!(f, "|")?;
             }
@@ -117,16 +102,8 @@ mod tests {
         let lines: Vec<String> = table.to_string().lines().map(str::to_owned).collect();
         assert_eq!(
             lines,
-            [
-                "| a\\|b | c | d     |",
-                "|------|--:|-------|",
-                "| x y  |   |       |",
-                "| 1    | 2 | three |"
-            ]
+            ["| a\\|b | c | d     |", "|------|--:|-------|", "| x y  |   |       |", "| 1    | 2 | three |"]
         );
-        assert_eq!(
-            format!("{table:#}"),
-            "| a\\|b | c | d |\n|---|--:|---|\n| x y |  |  |\n| 1 | 2 | three |\n"
-        );
+        assert_eq!(format!("{table:#}"), "| a\\|b | c | d |\n|---|--:|---|\n| x y |  |  |\n| 1 | 2 | three |\n");
     }
 }

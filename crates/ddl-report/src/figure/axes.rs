@@ -38,11 +38,7 @@ pub(super) const SCENE: PlotLayout = PlotLayout {
 };
 
 /// One place; two lines of text are above it, the legend is on the right.
-pub(super) const PLACE: PlotLayout = PlotLayout {
-    before: [62.0, 66.0],
-    after: [278.0, 56.0],
-    ..SCENE
-};
+pub(super) const PLACE: PlotLayout = PlotLayout { before: [62.0, 66.0], after: [278.0, 56.0], ..SCENE };
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Axes {
@@ -68,11 +64,7 @@ impl Axes {
         Self {
             low: [0, 1].map(|axis| centre[axis] - half[axis]),
             high: [0, 1].map(|axis| centre[axis] + half[axis]),
-            plan: PlanView {
-                centre,
-                middle: [0, 1].map(|axis| layout.before[axis] + scale * half[axis]),
-                scale,
-            },
+            plan: PlanView { centre, middle: [0, 1].map(|axis| layout.before[axis] + scale * half[axis]), scale },
             layout,
         }
     }
@@ -85,10 +77,7 @@ impl Axes {
 
     /// Upper left and lower right corner of the plot, pixels.
     pub(super) fn frame(&self) -> [[f64; 2]; 2] {
-        [
-            self.plan.px([self.low[0], self.high[1]]),
-            self.plan.px([self.high[0], self.low[1]]),
-        ]
+        [self.plan.px([self.low[0], self.high[1]]), self.plan.px([self.high[0], self.low[1]])]
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing) {

@@ -17,11 +17,7 @@ pub(crate) struct Drawing {
 
 impl Drawing {
     pub(crate) fn new(width: f64, height: f64, title: impl Into<String>) -> Self {
-        Self {
-            size: [width, height],
-            title: printable(title),
-            shapes: String::new(),
-        }
+        Self { size: [width, height], title: printable(title), shapes: String::new() }
     }
 
     fn add(&mut self, shape: &Markup) {

@@ -49,11 +49,7 @@ pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
         draw_squares(drawing, &axes, &traffic, &shades);
         draw_ends(drawing, &axes, &traffic, most);
     });
-    let mut legend = Legend {
-        drawing: &mut drawing,
-        left: right + 20.0,
-        y: top + 0.5 * ROW,
-    };
+    let mut legend = Legend { drawing: &mut drawing, left: right + 20.0, y: top + 0.5 * ROW };
     legend.shades(&shades, side);
     legend.marks(most, 2.0 * side);
     drawing.to_file(PLOT_STYLE)

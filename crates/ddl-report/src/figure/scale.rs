@@ -14,12 +14,7 @@ impl Scale {
     fn from_zero(largest: f64, pixels: [f64; 2]) -> Self {
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let step = round_step(largest / 4.0);
-        Self {
-            low: 0.0,
-            high: (largest / step - 1e-9).ceil() * step,
-            logarithmic: false,
-            pixels,
-        }
+        Self { low: 0.0, high: (largest / step - 1e-9).ceil() * step, logarithmic: false, pixels }
     }
 
     /// Linear from 0, or logarithmic when the values span more than a factor of 12.
@@ -69,10 +64,7 @@ pub(crate) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = (f64
 /// 1, 2 or 5 times a power of ten, at least about `least`.
 pub(crate) fn round_step(least: f64) -> f64 {
     let power = 10.0_f64.powf(least.log10().floor());
-    let digit = [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .find(|digit| digit * power >= 0.999 * least)
-        .unwrap_or(10.0);
+    let digit = [1.0, 2.0, 5.0, 10.0].into_iter().find(|digit| digit * power >= 0.999 * least).unwrap_or(10.0);
     digit * power
 }
 

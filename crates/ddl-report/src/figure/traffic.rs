@@ -58,11 +58,7 @@ impl Traffic {
 /// its corner.
 fn between(from: Position, to: Position, side: f64) -> impl Iterator<Item = Position> {
     let apart = (to[0] - from[0]).hypot(to[1] - from[1]);
-    let parts = if apart <= LONGEST_STEP {
-        (8.0 * apart / side).ceil() as u32
-    } else {
-        0
-    };
+    let parts = if apart <= LONGEST_STEP { (8.0 * apart / side).ceil() as u32 } else { 0 };
     (1..parts).map(move |part| {
         let share = f64::from(part) / f64::from(parts);
         [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))

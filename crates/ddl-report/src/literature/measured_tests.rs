@@ -45,12 +45,9 @@ fn baselines_agree_to_the_printed_decimals_or_within_their_spread() {
         Box::new(SocialForce),
         Box::new(StraightLine(TrueEndpoint)),
     ];
-    let printed = deterministic
-        .into_iter()
-        .map(|forecaster| (forecaster.name(), forecaster, [0.000_501; 2]));
-    let forecasters: Vec<(String, Box<dyn Forecaster>, [f64; 2])> = printed
-        .chain([(of_noise, Box::new(noisy) as _, [0.005, 0.012])])
-        .collect();
+    let printed = deterministic.into_iter().map(|forecaster| (forecaster.name(), forecaster, [0.000_501; 2]));
+    let forecasters: Vec<(String, Box<dyn Forecaster>, [f64; 2])> =
+        printed.chain([(of_noise, Box::new(noisy) as _, [0.005, 0.012])]).collect();
     for (f, (fold, windows)) in folds.iter().enumerate() {
         for (name, forecaster, tolerance) in &forecasters {
             let (star, rule) = (Convention::Star, WindowRule::Published);
@@ -58,10 +55,7 @@ fn baselines_agree_to_the_printed_decimals_or_within_their_spread() {
             let scores = ResultRow::measure(conditions, forecaster, windows).unwrap().scores;
             let expected = measured(name);
             assert_eq!(scores.pedestrians, pedestrians[f], "{fold}");
-            let errors = [
-                scores.min_ade - expected.ade.unwrap()[f],
-                scores.min_fde - expected.fde[f],
-            ];
+            let errors = [scores.min_ade - expected.ade.unwrap()[f], scores.min_fde - expected.fde[f]];
             for (error, most) in errors.into_iter().zip(tolerance) {
                 assert!(error.abs() <= *most, "{name}, {fold}: {error} m off");
             }

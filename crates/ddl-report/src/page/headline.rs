@@ -20,11 +20,7 @@ pub(super) fn headline(report: &Report) -> Markup {
         "{ade} and {fde} in metres, less is better; the number is {ade}. {} K: hypotheses of each pedestrian, of \
          which the best is scored. {} The tables below hold every number.",
         standing.in_words,
-        if lines > MOST_LINES {
-            format!("The first {MOST_LINES} of {lines} are drawn.")
-        } else {
-            String::new()
-        }
+        if lines > MOST_LINES { format!("The first {MOST_LINES} of {lines} are drawn.") } else { String::new() }
     );
     html! {
         @if let Some(line) = subject { (verdict(&standing, line)) }
@@ -44,14 +40,10 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
     let (errors, over) = match (subject.mean, standing.folds.as_slice(), first) {
         (Some(mean), [one], _) => (mean, format!("on `{one}`")),
         (Some(mean), folds, _) if standing.all_folds => (mean, format!("plain mean of the {} folds", folds.len())),
-        (Some(mean), folds, _) => (
-            mean,
-            format!("plain mean of the {} folds measured: {}", folds.len(), folds.join(", ")),
-        ),
-        (None, _, Some((fold, pair))) => (
-            pair,
-            format!("on `{fold}`, because it lacks other folds of this report"),
-        ),
+        (Some(mean), folds, _) => {
+            (mean, format!("plain mean of the {} folds measured: {}", folds.len(), folds.join(", ")))
+        }
+        (None, _, Some((fold, pair))) => (pair, format!("on `{fold}`, because it lacks other folds of this report")),
         (None, _, None) => return Markup::default(),
     };
     html! {

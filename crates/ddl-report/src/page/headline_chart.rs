@@ -128,13 +128,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
                 [0.0, y - 4.0],
                 format!("{}, K = {}", cut(&line.label, 12.0, 296.0), line.hypotheses),
             );
-            dumbbell(
-                &mut drawing,
-                &scale,
-                columns(line)[fold],
-                chart.is_subject(line),
-                y + 8.0,
-            );
+            dumbbell(&mut drawing, &scale, columns(line)[fold], chart.is_subject(line), y + 8.0);
         }
     }
     drawing

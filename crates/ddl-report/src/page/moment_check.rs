@@ -44,12 +44,7 @@ fn check_pedestrian(index: usize, pedestrian: &SnapshotPedestrian, truth: usize)
         return Err("a pedestrian has no hypothesis".to_owned());
     }
     check_path(index, "observed", &pedestrian.observed, OBSERVED)?;
-    check_path(
-        index,
-        "truth",
-        &pedestrian.truth,
-        pedestrian.truth.len().clamp(truth, HORIZON),
-    )?;
+    check_path(index, "truth", &pedestrian.truth, pedestrian.truth.len().clamp(truth, HORIZON))?;
     for (number, hypothesis) in pedestrian.hypotheses.iter().enumerate() {
         check_path(index, "hypotheses", &hypothesis.positions, HORIZON)?;
         check_coordinates(index, "goal", hypothesis.goal.as_slice())?;
@@ -66,9 +61,7 @@ fn check_pedestrian(index: usize, pedestrian: &SnapshotPedestrian, truth: usize)
 fn check_path(index: usize, field: &str, path: &[Position], expected: usize) -> Result<(), String> {
     if path.len() != expected {
         let count = path.len();
-        return Err(format!(
-            "pedestrian {index} has {count} positions in `{field}`, not {expected}"
-        ));
+        return Err(format!("pedestrian {index} has {count} positions in `{field}`, not {expected}"));
     }
     check_coordinates(index, field, path)
 }

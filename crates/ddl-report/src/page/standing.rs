@@ -72,9 +72,7 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
     let measured = |fold: &&str| !group.pedestrians(fold).is_empty();
     let folds: Vec<&str> = group.folds().into_iter().filter(measured).collect();
     let lines = group.labelled();
-    let mut lines: Vec<_> = lines
-        .map(|(line, label)| StandingLine::of(line, label, &folds))
-        .collect();
+    let mut lines: Vec<_> = lines.map(|(line, label)| StandingLine::of(line, label, &folds)).collect();
     // Lines without a mean come last; the sort is stable.
     let order = |line: &StandingLine| line.mean.map_or(f64::INFINITY, |mean| mean[0]);
     lines.sort_by(|a, b| order(a).total_cmp(&order(b)));

@@ -58,12 +58,7 @@ fn alike(group: &ResultGroup<'_>) -> bool {
         let rows = line.rows.iter().map(|row| &row.conditions);
         let mut rows: Vec<_> = rows.map(|row| (row.fold.clone(), row.seed)).collect();
         rows.sort_unstable();
-        let conditions = Conditions {
-            variant: None,
-            fold: String::new(),
-            seed: None,
-            ..line.conditions().clone()
-        };
+        let conditions = Conditions { variant: None, fold: String::new(), seed: None, ..line.conditions().clone() };
         (rows, conditions)
     };
     let mut lines = group.lines.iter().filter(|line| variant(line).is_some());

@@ -74,10 +74,7 @@ impl Pooled {
                 *sum += weight * of_seeds.iter().map(|(_, errors)| errors[at]).sum::<f64>();
             }
         }
-        (pedestrians > 0).then(|| Self {
-            pedestrians,
-            errors: sums.map(|sum| sum / pedestrians as f64),
-        })
+        (pedestrians > 0).then(|| Self { pedestrians, errors: sums.map(|sum| sum / pedestrians as f64) })
     }
 }
 

@@ -45,9 +45,5 @@ pub(super) fn counts(mut counts: Vec<usize>) -> String {
 
 /// Text that names the folds of a number.
 pub(super) fn folds(present: &[&str], folds: &[&str]) -> String {
-    if present.len() == folds.len() {
-        "all".to_owned()
-    } else {
-        present.join(", ")
-    }
+    if present.len() == folds.len() { "all".to_owned() } else { present.join(", ") }
 }

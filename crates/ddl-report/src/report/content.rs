@@ -24,11 +24,7 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     parts.extend(across_protocols::parts(&groups));
     parts.extend(ablation::parts(&groups));
     parts.extend(published::parts(rows));
-    Document {
-        lead: first_line(&groups),
-        title: title.to_owned(),
-        parts,
-    }
+    Document { lead: first_line(&groups), title: title.to_owned(), parts }
 }
 
 fn first_line(groups: &[ResultGroup<'_>]) -> String {

@@ -19,10 +19,8 @@ const OF_SEVERAL: [Choice; 2] = [(", likeliest", |s| s.likeliest), (", medoid", 
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let tables = groups.iter().filter(|group| group.protocol == Protocol::Fair);
     let part = |fair: &ResultGroup<'_>| {
-        let title = format!(
-            "What can be deployed, window rule `{}`, convention `{}`",
-            fair.window_rule, fair.convention
-        );
+        let title =
+            format!("What can be deployed, window rule `{}`, convention `{}`", fair.window_rule, fair.convention);
         let table = table(fair, groups)?;
         let caption = format!(
             "{NOTE} Data convention `{}`, window rule `{}`, protocols `single` and `fair`; scored: {}.",
@@ -39,9 +37,7 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
 pub(super) fn table(fair: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Option<Table> {
     let folds = fair.folds();
     let mut table = Table::of_folds(&["forecaster"], &folds, &["mean"]);
-    let single = groups
-        .iter()
-        .filter(|group| group.protocol == Protocol::Single && group.same_windows(fair));
+    let single = groups.iter().filter(|group| group.protocol == Protocol::Single && group.same_windows(fair));
     for (line, label) in single.flat_map(ResultGroup::labelled) {
         row(&mut table, label, line, &folds, OF_SEVERAL[0].1);
     }

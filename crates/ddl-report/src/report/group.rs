@@ -75,10 +75,7 @@ impl ResultGroup<'_> {
     }
 
     pub(crate) fn title(&self) -> String {
-        format!(
-            "Protocol `{}`, window rule `{}`, convention `{}`",
-            self.protocol, self.window_rule, self.convention
-        )
+        format!("Protocol `{}`, window rule `{}`, convention `{}`", self.protocol, self.window_rule, self.convention)
     }
 
     /// Protocol, window rule, convention and scored part, for captions.
@@ -109,11 +106,7 @@ impl ResultGroup<'_> {
         let numbered = |(index, label): (usize, &String)| {
             let same = labels.iter().filter(|other| *other == label).count();
             let before = labels[..index].iter().filter(|other| *other == label).count();
-            if same > 1 {
-                format!("{label} #{}", before + 1)
-            } else {
-                label.clone()
-            }
+            if same > 1 { format!("{label} #{}", before + 1) } else { label.clone() }
         };
         labels.iter().enumerate().map(numbered).collect()
     }
@@ -141,11 +134,7 @@ impl ResultGroup<'_> {
 impl<'a> TableLine<'a> {
     fn admits(&self, c: &Conditions) -> bool {
         let mine = self.conditions();
-        let same = Conditions {
-            fold: mine.fold.clone(),
-            seed: mine.seed,
-            ..c.clone()
-        };
+        let same = Conditions { fold: mine.fold.clone(), seed: mine.seed, ..c.clone() };
         *mine == same
     }
 

@@ -40,9 +40,7 @@ const JOINT: [MetricColumn; 10] = [
     ("of the true one %", 1, |s| percent(s, |joint| joint.collisions.truth)),
     ("CR_mean", 3, |s| s.joint.map(|joint| joint.close_collisions.mean)),
     ("CR_JADE", 3, |s| s.joint.map(|joint| joint.close_collisions.best)),
-    ("CR of the truth", 3, |s| {
-        s.joint.map(|joint| joint.close_collisions.truth)
-    }),
+    ("CR of the truth", 3, |s| s.joint.map(|joint| joint.close_collisions.truth)),
 ];
 
 fn percent(scores: &Scores, share: fn(JointScores) -> f64) -> Option<f64> {
@@ -58,9 +56,7 @@ const WHOLE: [MetricColumn; 13] = [
     ("likely FDE m", 3, |s| s.most_likely_fde),
     ("missed 1 m %", 1, |s| s.miss_rate_1m.map(|rate| 100.0 * rate)),
     ("missed 2 m %", 1, |s| s.miss_rate_2m.map(|rate| 100.0 * rate)),
-    ("runs into %", 1, |s| {
-        s.true_neighbour_collision_rate.map(|rate| 100.0 * rate)
-    }),
+    ("runs into %", 1, |s| s.true_neighbour_collision_rate.map(|rate| 100.0 * rate)),
     ("KDE NLL nats", 3, |s| s.kde_nll),
     ("AMD", 3, |s| s.amd),
     ("AMV m²", 3, |s| s.amv),
@@ -82,9 +78,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
 /// One line for each forecaster, one column for each metric, mean over its folds.
 fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
     let folds = group.folds();
-    let columns = ["forecaster", "folds"]
-        .into_iter()
-        .chain(metrics.iter().map(|(name, ..)| *name));
+    let columns = ["forecaster", "folds"].into_iter().chain(metrics.iter().map(|(name, ..)| *name));
     let mut table = Table::new(columns).text_column("folds");
     for (line, label) in group.labelled() {
         let present = line.present(&folds);

@@ -38,10 +38,7 @@ fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
     let columns = ["recording".to_owned(), "pedestrian-windows".to_owned()];
     let forecasters = measured.iter().map(|(label, ..)| label.clone());
     let mut table = Table::new(columns.into_iter().chain(forecasters));
-    for RecordingErrors {
-        recording, pedestrians, ..
-    } in recordings
-    {
+    for RecordingErrors { recording, pedestrians, .. } in recordings {
         let errors = measured.iter().map(|(.., recordings)| {
             let same = recordings.iter().find(|same| same.recording == *recording);
             pair(same.map(|r| rounded(r.min_ade)), same.map(|r| rounded(r.min_fde)))

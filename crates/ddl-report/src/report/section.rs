@@ -83,7 +83,5 @@ fn conditions(group: &ResultGroup<'_>) -> Vec<String> {
         }
     }
     let lines = alike.iter();
-    lines
-        .map(|(settings, labels)| format!("{}: {settings}.", labels.join(", ")))
-        .collect()
+    lines.map(|(settings, labels)| format!("{}: {settings}.", labels.join(", "))).collect()
 }

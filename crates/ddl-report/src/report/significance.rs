@@ -16,10 +16,8 @@ const METRICS: [BlockMetric; 2] = [|block| block.min_ade, |block| block.min_fde]
 /// with the most folds.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let folds = group.folds();
-    let lines: Vec<(MeasuredLine<'_>, String)> = group
-        .labelled()
-        .filter_map(|(line, label)| Some((MeasuredLine::of(line, &folds)?, label)))
-        .collect();
+    let lines: Vec<(MeasuredLine<'_>, String)> =
+        group.labelled().filter_map(|(line, label)| Some((MeasuredLine::of(line, &folds)?, label))).collect();
     let most = lines.iter().map(|(m, _)| m.folds.len()).max();
     let mut candidates = lines.iter().filter(|(m, _)| Some(m.folds.len()) == most);
     let first = candidates.clone().next();
@@ -56,10 +54,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     }
     vec![
         Part::subheading("How sure the means are"),
-        Part::Table(table.captioned(format!(
-            "95 % intervals and paired differences. {}",
-            group.conditions_in_words()
-        ))),
+        Part::Table(table.captioned(format!("95 % intervals and paired differences. {}", group.conditions_in_words()))),
     ]
 }
 

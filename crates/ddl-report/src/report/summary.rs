@@ -10,25 +10,13 @@ use crate::report::group::{ResultGroup, groups};
 use crate::report::{deployable, metrics, significance};
 
 /// Rows that only the full tables show, by the end of their names.
-const LEFT_OUT: [&str; 3] = [
-    "as packed",
-    "on the way that its network shapes",
-    "constant acceleration (bounded)",
-];
+const LEFT_OUT: [&str; 3] = ["as packed", "on the way that its network shapes", "constant acceleration (bounded)"];
 
 /// Columns of the table of scenes, by their names in the full tables.
 const COLLISIONS: [&str; 3] = ["of all futures %", "of the best %", "of the true one %"];
 
 /// Columns of the second table, by their names in the full tables.
-const METRICS: [&str; 7] = [
-    "goal FDE m",
-    "missed %",
-    "collide %",
-    "certified %",
-    "KDE NLL nats",
-    "AMD",
-    "AMV m²",
-];
+const METRICS: [&str; 7] = ["goal FDE m", "missed %", "collide %", "certified %", "KDE NLL nats", "AMD", "AMV m²"];
 
 pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
     let groups = groups(rows);

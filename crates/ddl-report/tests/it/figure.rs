@@ -26,10 +26,7 @@ fn every_class_of_a_picture_has_a_rule_in_its_file() {
     let window = window(2);
     let forecast = StraightLine(TrueEndpoint).forecast(&window).unwrap();
     let tracks = [window.track(0).to_vec(), window.track(1).to_vec()];
-    for svg in [
-        figure::scene(&window, &forecast).unwrap(),
-        figure::place("hall", "2 tracks", &tracks),
-    ] {
+    for svg in [figure::scene(&window, &forecast).unwrap(), figure::place("hall", "2 tracks", &tracks)] {
         let (style, shapes) = svg.split_once("</style>").unwrap();
         // All text has one.
         let elements = shapes.split('<').filter(|element| !element.starts_with("text"));

@@ -13,9 +13,7 @@ use serde_json::{Value, json};
 /// Pedestrians side by side, each with a fan of hypotheses, rounded like a recording.
 fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (Window, Forecast) {
     let track = |i: usize| -> Vec<Position> {
-        (0..20)
-            .map(|t| [0.437 * f64::from(t), 1.3 * i as f64 + 0.05 * f64::from(t * t % 7)])
-            .collect()
+        (0..20).map(|t| [0.437 * f64::from(t), 1.3 * i as f64 + 0.05 * f64::from(t * t % 7)]).collect()
     };
     let tracks: Vec<_> = (0..pedestrians).map(track).collect();
     let ids = (1..).map(PedestrianId).take(pedestrians).collect();
@@ -52,10 +50,7 @@ fn report() -> Report {
 
 fn with_moments(moments: &[ForecastSnapshot]) -> String {
     let report = report();
-    let page = Page {
-        moments,
-        ..Page::new(&report)
-    };
+    let page = Page { moments, ..Page::new(&report) };
     page.to_html().unwrap()
 }
 
@@ -96,10 +91,7 @@ fn the_head_takes_fair_results_and_the_published_ones_bring_their_warning() {
     let fair = head(&every_protocol);
     assert!(fair.contains("protocol <code>fair</code>") && !fair.contains("class=\"warning\""));
     assert!(!fair.contains("TRUE end"));
-    let published = every_protocol
-        .rows()
-        .iter()
-        .filter(|row| row.conditions.protocol == Protocol::Published);
+    let published = every_protocol.rows().iter().filter(|row| row.conditions.protocol == Protocol::Published);
     let published = head(&Report::new("Published", published.cloned()).unwrap());
     assert!(published.contains("protocol <code>published</code>") && published.contains("class=\"warning\""));
     assert!(head(&Report::new("Nothing", []).unwrap()).contains("This report holds no results."));
@@ -121,11 +113,7 @@ fn the_head_is_about_the_model_as_it_is() {
         };
         ResultRow::score(conditions, windows, std::slice::from_ref(forecast)).unwrap()
     };
-    let rows = [
-        row("DDL with hindsight", &right),
-        row("DDL", &forecast),
-        row("another", &forecast),
-    ];
+    let rows = [row("DDL with hindsight", &right), row("DDL", &forecast), row("another", &forecast)];
     let html = Page::new(&Report::new("Heads", rows).unwrap()).to_html().unwrap();
     let (_, verdict) = html.split_once("class=\"verdict\">").unwrap();
     assert!(verdict.starts_with("<strong>DDL</strong>"));
@@ -150,10 +138,7 @@ fn names_cannot_become_markup() {
     bad.recording = hostile.to_owned();
     bad.forecaster = hostile.to_owned();
     let report = report();
-    let page = Page {
-        report: &report,
-        moments: &[bad],
-    };
+    let page = Page { report: &report, moments: &[bad] };
     let html = page.to_html().unwrap();
     for end in ["<script>alert", "</script><script>a", "<!-- x"] {
         assert!(!html.contains(end), "{end}");
@@ -168,10 +153,7 @@ fn names_cannot_become_markup() {
 #[test]
 fn the_comparison_is_a_file_of_its_own() {
     let report = report();
-    let page = Page {
-        report: &report,
-        moments: &[moment(3, 20, true), moment(1, 1, false)],
-    };
+    let page = Page { report: &report, moments: &[moment(3, 20, true), moment(1, 1, false)] };
     let svg = page.comparison().unwrap().unwrap();
     assert!(svg.starts_with("<?xml") && svg.contains("<title>"));
     assert!(!svg.contains("NaN") && !svg.contains("inf") && !svg.contains("var("));
@@ -183,10 +165,7 @@ type Fault = (fn(&mut ForecastSnapshot), &'static str);
 fn what_is_not_whole_is_refused_by_name() {
     let report = report();
     let cases: [Fault; 6] = [
-        (
-            |m| m.pedestrians[1].truth.truncate(11),
-            "pedestrian 1 has 11 positions in `truth`, not 12",
-        ),
+        (|m| m.pedestrians[1].truth.truncate(11), "pedestrian 1 has 11 positions in `truth`, not 12"),
         (
             |m| m.pedestrians[0].hypotheses[1].positions[3][0] = f64::NAN,
             "pedestrian 0 has the coordinate NaN m in `hypotheses`; coordinates must be within",
@@ -200,18 +179,12 @@ fn what_is_not_whole_is_refused_by_name() {
             "hypothesis 1 of pedestrian 0 has the weight -0.5, which is not between 0 and 1",
         ),
         (|m| m.pedestrians.clear(), "no pedestrian"),
-        (
-            |m| m.pedestrians[1].hypotheses.clear(),
-            "a pedestrian has no hypothesis",
-        ),
+        (|m| m.pedestrians[1].hypotheses.clear(), "a pedestrian has no hypothesis"),
     ];
     for (change, expected) in cases {
         let mut bad = moment(2, 2, true);
         change(&mut bad);
-        let page = Page {
-            moments: &[moment(1, 1, false), bad],
-            ..Page::new(&report)
-        };
+        let page = Page { moments: &[moment(1, 1, false), bad], ..Page::new(&report) };
         let words = page.to_html().unwrap_err().to_string();
         let expected = format!("moment 1 (recording `scene`, frame 70): {expected}");
         assert!(words.starts_with(&expected), "{words}");
@@ -288,10 +261,7 @@ fn a_viewer_plays_what_is_not_over_yet() {
     under_way.groups = vec![vec![0, 1]];
     let html = view(&under_way).unwrap();
     let data: Value = serde_json::from_str(embedded(&html, "moments-json")).unwrap();
-    assert_eq!(
-        [&data[0]["joint"], &data[0]["groups"]],
-        [&json!(true), &json!([[0, 1]])]
-    );
+    assert_eq!([&data[0]["joint"], &data[0]["groups"]], [&json!(true), &json!([[0, 1]])]);
     under_way.groups = vec![vec![0, 2]];
     assert!(view(&under_way).is_err());
     under_way.groups.clear();

@@ -58,11 +58,7 @@ fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
         training_subset: Some("2000 windows drawn with seed 1".to_owned()),
         ..Conditions::new(Convention::Star, WindowRule::Published, protocol, fold, "DDL")
     };
-    ResultRow {
-        conditions,
-        scores: scores(min_ade),
-        blocks: blocks(fold, min_ade),
-    }
+    ResultRow { conditions, scores: scores(min_ade), blocks: blocks(fold, min_ade) }
 }
 
 fn turning(pedestrians: usize, min_ade: f64) -> Vec<CategoryScores> {
@@ -229,10 +225,7 @@ fn files_are_named_checked_and_read_back() {
     let missing = Report::load(&file).unwrap_err();
     assert!(missing.to_string().contains("ddl-report-"));
     let newer = json.replacen("\"format\":1", "\"format\":2", 1);
-    assert!(matches!(
-        Report::from_json(&newer),
-        Err(ReportError::Format { found: 2, .. })
-    ));
+    assert!(matches!(Report::from_json(&newer), Err(ReportError::Format { found: 2, .. })));
     assert!(matches!(Report::from_json("{}"), Err(ReportError::Json(_))));
 }
 
@@ -296,10 +289,7 @@ fn categories_are_pooled_over_the_pedestrians_of_shared_folds() {
     rows.extend(of_forecaster(others.to_vec(), "lines"));
     let page = markdown(rows);
     assert!(page.contains("pooled over eth, hotel."), "{page}");
-    assert_eq!(
-        cells(line(&page, "| turning left ")),
-        ["turning left", "40", "0.200/0.400", "0.300/0.600"]
-    );
+    assert_eq!(cells(line(&page, "| turning left ")), ["turning left", "40", "0.200/0.400", "0.300/0.600"]);
 }
 
 #[test]
@@ -316,11 +306,7 @@ fn own_recordings_have_a_row_each_and_one_for_all() {
     });
     measured.scores.pedestrians = 110;
     let page = markdown([measured.clone()]);
-    for row in [
-        ["lobby", "100", "0.200/0.400"],
-        ["yard", "10", "0.750/1.500"],
-        ["all", "110", "0.250/0.500"],
-    ] {
+    for row in [["lobby", "100", "0.200/0.400"], ["yard", "10", "0.750/1.500"], ["all", "110", "0.250/0.500"]] {
         assert_eq!(cells(line(&page, &format!("| {} ", row[0]))), row);
     }
     // A single recording has no table by recording.

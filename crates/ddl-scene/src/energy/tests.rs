@@ -6,10 +6,7 @@ use super::*;
 use crate::fixture::energy;
 
 fn agree(found: f32, expected: f32) {
-    assert!(
-        (found - expected).abs() < 1e-4 * expected.max(1.0),
-        "{found} {expected}"
-    );
+    assert!((found - expected).abs() < 1e-4 * expected.max(1.0), "{found} {expected}");
 }
 
 /// Present distance and radius (m), strength, distances with their energies.
@@ -19,24 +16,9 @@ type Conflicts = ([f64; 2], f32, &'static [[f32; 2]]);
 #[test]
 fn conflicts_by_hand() {
     let cases: [Conflicts; 5] = [
-        (
-            [3.0, 0.0],
-            0.0,
-            &[
-                [0.0, 1.6],
-                [0.05, 1.4],
-                [0.3, 0.6],
-                [0.7, 0.15],
-                [0.9, 0.05],
-                [7.0, 0.0],
-            ],
-        ),
+        ([3.0, 0.0], 0.0, &[[0.0, 1.6], [0.05, 1.4], [0.3, 0.6], [0.7, 0.15], [0.9, 0.05], [7.0, 0.0]]),
         // A radius of 0.7 m.
-        (
-            [3.0, 0.7],
-            0.0,
-            &[[0.2, 1.6], [0.7, 1.6], [0.9, 0.8], [1.0, 0.6], [1.6, 0.05], [1.7, 0.0]],
-        ),
+        ([3.0, 0.7], 0.0, &[[0.2, 1.6], [0.7, 1.6], [0.9, 0.8], [1.0, 0.6], [1.6, 0.05], [1.7, 0.0]]),
         // Two who are 0.9 m apart are 0.2 m from that edge: a conflict begins there for them, or at 0.1 m.
         ([0.9, 0.7], 0.0, &[[0.7, 1.6], [0.8, 0.8], [0.9, 0.4], [1.1, 0.1]]),
         ([0.7, 0.7], 0.0, &[[0.7, 1.6], [0.75, 0.8], [0.8, 0.4]]),
@@ -95,18 +77,11 @@ fn strengths_by_hand() {
 fn avoidance_by_hand() {
     let energy = energy();
     // Logarithms for strangers and companions, on straight lines.
-    for [within, strangers, companions] in [
-        [0.0, 3.0, 2.0],
-        [0.3, 2.5, 1.7],
-        [0.9, 0.625, 0.275],
-        [1.5, 0.25, 0.05],
-        [9.0, 0.0, 0.0],
-    ] {
+    for [within, strangers, companions] in
+        [[0.0, 3.0, 2.0], [0.3, 2.5, 1.7], [0.9, 0.625, 0.275], [1.5, 0.25, 0.05], [9.0, 0.0, 0.0]]
+    {
         let [a, b] = energy.avoidance(within).map(f64::ln);
-        assert!(
-            (a - strangers).abs() + (b - companions).abs() < 1e-9,
-            "{within}: {a} {b}"
-        );
+        assert!((a - strangers).abs() + (b - companions).abs() < 1e-9, "{within}: {a} {b}");
     }
     // Strangers keep away more than companions, and farther ones less.
     for within in [0.3, 0.5, 0.8, 1.2] {

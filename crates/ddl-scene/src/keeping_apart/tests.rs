@@ -32,10 +32,7 @@ fn the_nearest_way_that_is_free_is_taken() {
     // Who stands walks out of the way at 0.2 or 0.22 m/s: the other one passes at 0.392 or 0.43 m.
     assert_eq!([pair("1 1", "-0.2 0"), pair("1 1", "-0.22 0")], [[2, 0], [0, 1]]);
     // A way of the probability 0 is none.
-    assert_eq!(
-        followed("0 0 0 1  1 0 1  0 0.3 0.9\n0 2 0 0  1 0 0  0 1 1", None),
-        [0, 0]
-    );
+    assert_eq!(followed("0 0 0 1  1 0 1  0 0.3 0.9\n0 2 0 0  1 0 0  0 1 1", None), [0, 0]);
     // A plan that stands 1 m aside of the way ahead: a radius of 0.5 m is not in the way, one of 0.6 m is.
     for (radius, expected) in [(0.5, 0), (0.6, 1)] {
         let plan = Hypotheses::certain([1.0, 2.0], &[[1.0, 2.0]; HORIZON], radius);
@@ -67,12 +64,8 @@ fn the_way_with_the_fewest_collisions_is_taken() {
 
 #[test]
 fn least_distances_by_hand() {
-    let squares = [
-        ([3.0, 1.0], [-1.0, 1.0]),
-        ([3.0, 4.0], [3.0, 5.0]),
-        ([2.0, 3.0], [1.0, -1.0]),
-        ([0.5, -2.0], [0.5, -2.0]),
-    ];
+    let squares =
+        [([3.0, 1.0], [-1.0, 1.0]), ([3.0, 4.0], [3.0, 5.0]), ([2.0, 3.0], [1.0, -1.0]), ([0.5, -2.0], [0.5, -2.0])];
     // At (0, 1), at the begin, at the end, and of one who stands.
     for ((from, to), expected) in squares.into_iter().zip([1.0, 25.0, 25.0 / 17.0, 4.25]) {
         assert!((least_squared(from, to) - expected).abs() < 1e-5, "{from:?} {to:?}");

@@ -7,23 +7,11 @@ use crate::fixture::{futures, pedestrians, plan, scene};
 fn means_and_scales_by_hand() {
     let speeds = [vec![[0.0, 0.0], [0.75, -1.0]], vec![[1.0, 0.5], [1.0, 3.0]]];
     let crowd = futures(&[[1.0, 2.0], [-3.0, 0.5]], &speeds, &[0.5, 0.5], &[0.6, 1.2]);
-    let mixture = JointMixture {
-        weights: vec![0.7, 0.3],
-        shares: vec![0.5, 0.5, 0.0, 1.0, 0.2, 0.8, 1.0, 0.0],
-    };
+    let mixture = JointMixture { weights: vec![0.7, 0.3], shares: vec![0.5, 0.5, 0.0, 1.0, 0.2, 0.8, 1.0, 0.0] };
     let end = |pair: usize| mixture.mean(pair, |i, h| crowd.forecast().hypothesis(i, h)[11]);
-    let expected = [
-        [1.0 + 1.8, 2.0 - 2.4],
-        [1.0 + 3.6, 2.0 - 4.8],
-        [-3.0 + 4.8, 0.5 + 12.0],
-        [-3.0 + 4.8, 0.5 + 2.4],
-    ];
+    let expected = [[1.0 + 1.8, 2.0 - 2.4], [1.0 + 3.6, 2.0 - 4.8], [-3.0 + 4.8, 0.5 + 12.0], [-3.0 + 4.8, 0.5 + 2.4]];
     for (pair, expected) in expected.into_iter().enumerate() {
-        assert!(
-            (0..2).all(|axis| (end(pair)[axis] - expected[axis]).abs() < 1e-6),
-            "{pair}: {:?}",
-            end(pair)
-        );
+        assert!((0..2).all(|axis| (end(pair)[axis] - expected[axis]).abs() < 1e-6), "{pair}: {:?}", end(pair));
     }
     let scales = mixture.scales(crowd.forecast()).unwrap();
     for (t, time) in (1..=12).map(|t| (t - 1, 0.4 * t as f64)) {
@@ -36,10 +24,7 @@ fn means_and_scales_by_hand() {
             assert!((found - expected).abs() < 1e-6, "{t}: {found} {expected}");
         }
     }
-    assert_eq!(
-        mixture.scales(&scene(&pedestrians("0 0 0 0  0.5 0 0  0.5 0 0")).1),
-        None
-    );
+    assert_eq!(mixture.scales(&scene(&pedestrians("0 0 0 0  0.5 0 0  0.5 0 0")).1), None);
 }
 
 #[test]
@@ -83,12 +68,7 @@ fn a_plan_is_avoided_where_it_is_at_that_time() {
     let near = |found: &[f64], expected: [f64; 3]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01);
     let after = |odds: f64| [0.6 * odds, 0.3, 0.1].map(|weight| weight / (0.6 * odds + 0.4));
     // 1.6 s earlier or later it passes at more than 1.1 m, within reach of a radius of 1 m.
-    for (delay, radius, odds) in [
-        (0.0, 0.0, collided),
-        (-1.6, 0.0, 1.0),
-        (1.6, 0.0, 1.0),
-        (1.6, 1.14, collided),
-    ] {
+    for (delay, radius, odds) in [(0.0, 0.0, collided), (-1.6, 0.0, 1.0), (1.6, 0.0, 1.0), (1.6, 1.14, collided)] {
         let [found, far] = shares(&crossing(delay, radius), None, 40_000);
         assert!(near(&found, after(odds)), "{delay} {radius}: {found:?} {odds}");
         assert!(near(&far, [0.2, 0.5, 0.3]), "{far:?}");
@@ -99,8 +79,5 @@ fn a_plan_is_avoided_where_it_is_at_that_time() {
     assert_eq!(own, [1.0, 0.0, 0.0]);
     // The likeliest future has somebody out of the way, because each future is free of collisions.
     let mixture = JointMixture::of(&window, &forecast, Some(&crossing(0.0, 0.0)), None);
-    assert!(
-        (0..3).all(|k| mixture.weights[k] == 0.0 || mixture.shares[3 * k] < 0.999),
-        "{mixture:?}"
-    );
+    assert!((0..3).all(|k| mixture.weights[k] == 0.0 || mixture.shares[3 * k] < 0.999), "{mixture:?}");
 }

@@ -10,18 +10,13 @@ impl Occupancy {
         let [width, height] = self.area.size();
         let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();
         let rows = self.probabilities.chunks_exact(width).rev();
-        bytes.extend(
-            rows.flatten()
-                .map(|p| (255.0 * (1.0 - p)).round().clamp(0.0, 254.0) as u8),
-        );
+        bytes.extend(rows.flatten().map(|p| (255.0 * (1.0 - p)).round().clamp(0.0, 254.0) as u8));
         bytes
     }
 
     /// The description (YAML) with which a map server loads the image in this file.
     pub fn yaml(&self, image: &str) -> String {
-        let Area {
-            origin: [x, y], cell, ..
-        } = self.area;
+        let Area { origin: [x, y], cell, .. } = self.area;
         let image = Value::from(image);
         format!(
             "image: {image}\nresolution: {cell:?}\norigin: [{x:?}, {y:?}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\n\

@@ -31,17 +31,8 @@ impl MassTable {
         let [first, reach] = [(radius - EDGE * scale).max(0.0), reach(radius, scale)];
         let density = ROWS as f64 / (reach - first).max(f64::MIN_POSITIVE);
         let at = |row: usize| mass(first + (reach - first) * row as f64 / ROWS as f64, radius, scale);
-        let masses = if scale > 0.0 {
-            (0..=ROWS).map(at).collect()
-        } else {
-            Vec::new()
-        };
-        Self {
-            first,
-            reach,
-            density,
-            masses,
-        }
+        let masses = if scale > 0.0 { (0..=ROWS).map(at).collect() } else { Vec::new() };
+        Self { first, reach, density, masses }
     }
 
     /// The mass is 0 farther away than this (m).
@@ -81,24 +72,16 @@ fn reach(radius: f64, scale: f64) -> f64 {
 pub(super) fn mass(distance: f64, radius: f64, scale: f64) -> f64 {
     let [d, r] = [distance / scale, radius / scale];
     // The edge comes nearest to the centre at the angle 0. Around it, points get closer as far as needed.
-    let width = (((d - r).powi(2) + 3.0) / (d * r).max(f64::MIN_POSITIVE))
-        .sqrt()
-        .min(PI);
+    let width = (((d - r).powi(2) + 3.0) / (d * r).max(f64::MIN_POSITIVE)).sqrt().min(PI);
     let last = (PI / width).asinh();
     let integrand = |point: usize| {
         let v = last * point as f64 / POINTS as f64;
         let half = (0.5 * width * v.sinh()).sin().powi(2);
         let square = (d - r).powi(2) + 4.0 * d * r * half;
         let angle = r * (r - d) + 2.0 * d * r * half;
-        let ratio = if square > 1e-6 {
-            probability(square.sqrt()) / square
-        } else {
-            0.5
-        };
+        let ratio = if square > 1e-6 { probability(square.sqrt()) / square } else { 0.5 };
         ratio * angle * width * v.cosh()
     };
-    let inner: f64 = (1..POINTS)
-        .map(|point| f64::from(2 + 2 * (point as u32 % 2)) * integrand(point))
-        .sum();
+    let inner: f64 = (1..POINTS).map(|point| f64::from(2 + 2 * (point as u32 % 2)) * integrand(point)).sum();
     (integrand(0) + inner + integrand(POINTS)) * last / (3.0 * POINTS as f64) / PI
 }

@@ -82,16 +82,9 @@ proptest! {
 fn files_of_others() {
     let area = Area::new([-1.0, 2.0], [-0.25, 2.5], 0.25).unwrap();
     let probabilities = vec![0.0, 0.5, 1.0, 0.2, 0.004, 0.996];
-    let grid = Occupancy {
-        area,
-        time: 0.4,
-        probabilities,
-    };
+    let grid = Occupancy { area, time: 0.4, probabilities };
     let pgm = grid.pgm();
-    assert_eq!(
-        pgm,
-        [b"P5\n3 2\n255\n".as_slice(), &[204, 254, 1, 254, 128, 0]].concat()
-    );
+    assert_eq!(pgm, [b"P5\n3 2\n255\n".as_slice(), &[204, 254, 1, 254, 128, 0]].concat());
     let expected = "image: \"a \\\"b\\\".pgm\"\nresolution: 0.25\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
     assert_eq!(grid.yaml("a \"b\".pgm"), expected);
@@ -102,10 +95,7 @@ fn files_of_others() {
         (&3.into(), &serde_json::json!({"stamp": 0.4, "frame_id": "odom"}))
     );
     let head = area.npy_head(7);
-    assert_eq!(
-        (head.len() % 64, &head[..8], head.last()),
-        (0, b"\x93NUMPY\x01\x00".as_slice(), Some(&b'\n'))
-    );
+    assert_eq!((head.len() % 64, &head[..8], head.last()), (0, b"\x93NUMPY\x01\x00".as_slice(), Some(&b'\n')));
     assert!(String::from_utf8_lossy(&head).contains("'shape': (7, 2, 3)"));
     assert_eq!(grid.npy_values()[4..8], 0.5_f32.to_le_bytes());
 }

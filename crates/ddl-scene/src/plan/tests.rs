@@ -1,15 +1,7 @@
 use super::*;
 
 fn plan(rows: &[[f64; 4]]) -> Result<Plan, PlanError> {
-    Plan::new(
-        rows.iter()
-            .map(|&[time, x, y, radius]| PlanPoint {
-                time,
-                position: [x, y],
-                radius,
-            })
-            .collect(),
-    )
+    Plan::new(rows.iter().map(|&[time, x, y, radius]| PlanPoint { time, position: [x, y], radius }).collect())
 }
 
 #[test]
@@ -25,12 +17,7 @@ fn between_rows_everything_is_on_a_line() {
         (60.0, [6.0, 5.5, 0.0]),
     ] {
         let found = plan.at(time);
-        let off = [
-            found.time - time,
-            found.position[0] - x,
-            found.position[1] - y,
-            found.radius - radius,
-        ];
+        let off = [found.time - time, found.position[0] - x, found.position[1] - y, found.radius - radius];
         assert!(off.iter().all(|off| off.abs() < 1e-12), "{found:?}");
     }
 }
@@ -42,14 +29,7 @@ fn rows_that_make_no_plan_are_refused() {
     assert!(plan(&edges).is_ok() && plan(&edges[..1]).is_err() && plan(&[]).is_err());
     assert!(plan(&[[4.8, 1.0, 1.0, 0.0]]).is_ok() && plan(&[[4.9, 1.0, 1.0, 0.0]]).is_err());
     assert!(plan(&[good, good]).is_err() && plan(&[[1.0, 1.0, 2.0, 0.3], good]).is_err());
-    let wrong = [
-        [0.0, f64::NAN],
-        [1.0, f64::INFINITY],
-        [1.0, 1.1e7],
-        [2.0, -1.1e7],
-        [3.0, 1.1e7],
-        [3.0, -0.1],
-    ];
+    let wrong = [[0.0, f64::NAN], [1.0, f64::INFINITY], [1.0, 1.1e7], [2.0, -1.1e7], [3.0, 1.1e7], [3.0, -0.1]];
     for (column, value) in wrong.map(|[column, value]| (column as usize, value)) {
         let mut wrong = [1.0, 1.0, 2.0, 0.3];
         wrong[column] = value;

@@ -10,19 +10,14 @@ fn person(present: Position, hypotheses: &[[Position; 3]]) -> Hypotheses {
         })
     };
     let paths: Vec<_> = hypotheses.iter().map(path).collect();
-    Hypotheses::new(present, vec![1.0 / hypotheses.len() as f32; hypotheses.len()], |k| {
-        &paths[k]
-    })
+    Hypotheses::new(present, vec![1.0 / hypotheses.len() as f32; hypotheses.len()], |k| &paths[k])
 }
 
 /// The samples of each cluster, in ascending order.
 fn parts(people: &[Hypotheses], chosen: &[Vec<u8>], count: usize) -> Vec<Vec<usize>> {
     let labels = clusters(people, chosen, count);
     let of = |label: usize| (0..labels.len()).filter(|&s| labels[s] == label).collect();
-    let mut parts: Vec<Vec<usize>> = (0..count)
-        .map(of)
-        .filter(|part: &Vec<usize>| !part.is_empty())
-        .collect();
+    let mut parts: Vec<Vec<usize>> = (0..count).map(of).filter(|part: &Vec<usize>| !part.is_empty()).collect();
     parts.sort();
     parts
 }
@@ -48,10 +43,7 @@ fn each_step_and_each_axis_counts() {
 fn clusters_have_their_means_as_centres() {
     let far = |x: f64, y: f64| [[x, 0.0], [0.0, 0.0], [0.0, y]];
     let people = [
-        person(
-            [50.0, -20.0],
-            &[far(0.0, 0.0), far(1.0, 0.0), far(2.0, 3.0), far(6.0, 8.0)],
-        ),
+        person([50.0, -20.0], &[far(0.0, 0.0), far(1.0, 0.0), far(2.0, 3.0), far(6.0, 8.0)]),
         person([0.0, 0.0], &[far(0.0, 0.0), far(0.0, 5.0), far(9.0, 0.0)]),
     ];
     let chosen = [vec![0, 1, 0, 3, 3, 2], vec![0, 0, 1, 0, 1, 2]];
@@ -61,14 +53,7 @@ fn clusters_have_their_means_as_centres() {
     // Those of the last three scenes, of the first three, and one without any.
     let sums = [14, 0, 0, 0, 0, 19, 9, 0, 0, 0, 0, 5, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 5].map(|sum| sum as f32);
     let expected = sums.map(|sum| sum / 3.0).into_iter().chain([9.0; 12]);
-    for (found, expected) in centres
-        .as_slice()
-        .concat()
-        .as_flattened()
-        .as_flattened()
-        .iter()
-        .zip(expected)
-    {
+    for (found, expected) in centres.as_slice().concat().as_flattened().as_flattened().iter().zip(expected) {
         assert!((found - expected).abs() < 1e-5, "{centres:?}");
     }
     // The third sample is at (0, 0), and at 5 m along y at the end: 1/9 and 100/9 from the second centre.

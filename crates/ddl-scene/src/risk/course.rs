@@ -64,10 +64,7 @@ impl Leg {
             let along = |axis: usize| from[axis] + self.shares[end] * (to[axis] - from[axis]);
             [along(0) - self.positions[end][0], along(1) - self.positions[end][1]]
         };
-        Approach {
-            offsets: [offset(0), offset(1)],
-            scales: self.shares.map(|share| least + share * (most - least)),
-        }
+        Approach { offsets: [offset(0), offset(1)], scales: self.shares.map(|share| least + share * (most - least)) }
     }
 
     /// The least distance (m) from the edge of the plan during the leg, of the pedestrian that deviates from its path

@@ -84,9 +84,7 @@ impl Crowd {
                 (paths.iter().flat_map(move |path| [path[step], path[step + 1]]), margin)
             })
         };
-        let rings = pairs()
-            .map(|(i, k)| around(i, &mut paths[k * n + i..].iter().take(1)))
-            .collect();
+        let rings = pairs().map(|(i, k)| around(i, &mut paths[k * n + i..].iter().take(1))).collect();
         let outer_rings = (0..n).map(|i| around(i, &mut paths[i..].iter().step_by(n))).collect();
         let deviations = Quadrature::new();
         let block = |b: usize| {
@@ -94,16 +92,7 @@ impl Crowd {
             let most = f32::hypot(x[BLOCK - 1], y[BLOCK - 1]) * (1.0 + ROUNDING as f32);
             Block { x, y, most }
         };
-        Ok(Self {
-            blocks: from_fn(block),
-            n,
-            paths,
-            scales,
-            rings,
-            outer_rings,
-            origin,
-            deviations,
-        })
+        Ok(Self { blocks: from_fn(block), n, paths, scales, rings, outer_rings, origin, deviations })
     }
 
     /// The room within `within` metres of the edge of a plan.
@@ -195,16 +184,7 @@ impl Way {
     fn new([[x, y], end]: [[f32; 2]; 2], scales: [f64; 2], reaches: [f64; 2]) -> Self {
         let [[s, s1], [r, r1]] = [scales, reaches].map(|ends| ends.map(|number| number as f32));
         let [dx, dy, ds, dr] = [end[0] - x, end[1] - y, s1 - s, r1 - r];
-        Self {
-            x,
-            y,
-            s,
-            r,
-            dx,
-            dy,
-            ds,
-            dr,
-        }
+        Self { x, y, s, r, dx, dy, ds, dr }
     }
 
     /// The least squared distance of the path itself.
@@ -217,10 +197,7 @@ impl Way {
     }
 
     /// The deviations of a block that come close, one bit for each.
-    #[expect(
-        clippy::needless_bitwise_bool,
-        reason = "branches would keep the loop out of vectors"
-    )]
+    #[expect(clippy::needless_bitwise_bool, reason = "branches would keep the loop out of vectors")]
     fn close(&self, block: &Block) -> u32 {
         let mut bits = [0; BLOCK];
         for j in 0..BLOCK {
@@ -258,11 +235,7 @@ fn near(a: &Rings, b: &Rings) -> Option<[u32; HORIZON]> {
     let mut near = [0; HORIZON];
     let mut any = 0;
     for step in 0..HORIZON {
-        let [x, y, reach] = [
-            a[0][step] - b[0][step],
-            a[1][step] - b[1][step],
-            a[2][step] + b[2][step],
-        ];
+        let [x, y, reach] = [a[0][step] - b[0][step], a[1][step] - b[1][step], a[2][step] + b[2][step]];
         near[step] = u32::from(x * x + y * y <= reach * reach);
         any |= near[step];
     }

@@ -23,10 +23,7 @@ struct Case {
 }
 
 fn one(futures: &Futures, plan: &Plan, within: f64) -> Risk {
-    futures
-        .risks(std::slice::from_ref(plan), within, None)
-        .unwrap()
-        .remove(0)
+    futures.risks(std::slice::from_ref(plan), within, None).unwrap().remove(0)
 }
 
 fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {
@@ -81,10 +78,7 @@ fn monte_carlo_agrees() {
         errors.extend(found.iter().zip(expected).map(|(a, b)| (a - b).abs()));
     };
     for case in &cases {
-        let (crowd, plans) = (
-            futures(&case.starts, &case.velocities, &case.weights, &case.scales),
-            [plan(&case.plan)],
-        );
+        let (crowd, plans) = (futures(&case.starts, &case.velocities, &case.weights, &case.scales), [plan(&case.plan)]);
         let crowd = with_deviation(&crowd, case.deviation);
         for (name, expected, risks) in [
             ("unseen", &case.unseen, crowd.risks(&plans, case.within, case.ego)),
@@ -92,11 +86,7 @@ fn monte_carlo_agrees() {
         ] {
             let risk = risks.unwrap().remove(0);
             assert!(close(&[risk.total], &risk.until[11..], 0.0));
-            compare(
-                name,
-                &[&risk.pedestrians[..], &risk.steps, &risk.until].concat(),
-                expected,
-            );
+            compare(name, &[&risk.pedestrians[..], &risk.steps, &risk.until].concat(), expected);
         }
         let clearance = crowd.clearances(&plans).unwrap().remove(0);
         compare("clearances", &clearance.pedestrians, &case.clearances);
@@ -111,10 +101,7 @@ fn what_cannot_be_asked_is_refused() {
     let futures = futures(&[[0.0; 2]], &[vec![[1.0, 0.0]]], &[1.0], &[0.5]);
     for within in [-0.1, f64::NAN, f64::INFINITY] {
         let refused = futures.risks(&[], within, None).unwrap_err().to_string();
-        assert!(
-            refused.starts_with("the distance that counts as close is "),
-            "{refused}"
-        );
+        assert!(refused.starts_with("the distance that counts as close is "), "{refused}");
     }
     let window = Window::new("yard", 0, 10, vec![ddl_core::PedestrianId(1)], vec![vec![[0.0; 2]; 8]]).unwrap();
     let bare = Forecast::with_equal_weights(1, 1, vec![[0.0; 2]; 12]).unwrap();

@@ -27,11 +27,7 @@ fn pair_energy(pedestrians: &[Pedestrian], [(i, h), (j, g)]: [(usize, usize); 2]
         (2, 3) => 0.3 / 3.0_f64.sqrt(),
         _ => 0.0,
     };
-    let knots = if strength > 0.0 {
-        [3.1, 1.5, 0.7, 0.3, 0.5, 0.0]
-    } else {
-        [1.6, 0.8, 0.4, 0.2, 0.1, 0.0]
-    };
+    let knots = if strength > 0.0 { [3.1, 1.5, 0.7, 0.3, 0.5, 0.0] } else { [1.6, 0.8, 0.4, 0.2, 0.1, 0.0] };
     let place = (least / 0.2).min(4.999_999_9);
     let conflict = knots[place as usize] + place.fract() * (knots[place as usize + 1] - knots[place as usize]);
     let moved = |(_, _, all): &Pedestrian, h: usize| all[h].1.map(|speed| 4.8 * speed);
@@ -47,18 +43,12 @@ fn scenes_are_as_likely_as_their_energies_say() {
     let weight = |scene: usize, i: usize| pedestrians[i].2[digit(scene, i)].0;
     let energies = |scene: usize, i: usize| -> f64 {
         let others = (0..N).filter(|&j| j != i);
-        others
-            .map(|j| pair_energy(&pedestrians, [(i, digit(scene, i)), (j, digit(scene, j))]))
-            .sum()
+        others.map(|j| pair_energy(&pedestrians, [(i, digit(scene, i)), (j, digit(scene, j))])).sum()
     };
     let scenes = 3_usize.pow(N as u32);
-    let independent: Vec<f64> = (0..scenes)
-        .map(|scene| (0..N).map(|i| weight(scene, i)).product())
-        .collect();
+    let independent: Vec<f64> = (0..scenes).map(|scene| (0..N).map(|i| weight(scene, i)).product()).collect();
     let energy_of = |scene: usize| 0.5 * (0..N).map(|i| energies(scene, i)).sum::<f64>();
-    let odds: Vec<f64> = (0..scenes)
-        .map(|scene| independent[scene] * (-energy_of(scene)).exp())
-        .collect();
+    let odds: Vec<f64> = (0..scenes).map(|scene| independent[scene] * (-energy_of(scene)).exp()).collect();
     let total: f64 = odds.iter().sum();
     let wanted: Vec<f64> = odds.iter().map(|odds| odds / total).collect();
     // What one sweep gives: each pedestrian in turn is distributed as it should be given the others.
@@ -94,10 +84,7 @@ fn scenes_are_as_likely_as_their_energies_say() {
         for state in 0..243 {
             let rest: f64 = found[state..].iter().step_by(243).sum();
             let both = found[state + 243 * h];
-            assert!(
-                (both - rest * pedestrians[N - 1].2[h].0).abs() < 0.003,
-                "{both} of {rest}"
-            );
+            assert!((both - rest * pedestrians[N - 1].2[h].0).abs() < 0.003, "{both} of {rest}");
         }
     }
 }
@@ -108,12 +95,7 @@ fn who_walks_together_or_may_meet_is_a_pair() {
     // The first at `speeds[0]` towards the second, who goes aside or comes at `speeds[1]`.
     let count = |apart: f64, radius: f64, speeds: [f64; 2]| {
         let [x, y] = [2.0 + 0.6 * apart, -1.0 - 0.8 * apart];
-        let [vx, vy, ux, uy] = [
-            0.6 * speeds[0],
-            -0.8 * speeds[0],
-            0.04 - 0.6 * speeds[1],
-            0.03 + 0.8 * speeds[1],
-        ];
+        let [vx, vy, ux, uy] = [0.6 * speeds[0], -0.8 * speeds[0], 0.04 - 0.6 * speeds[1], 0.03 + 0.8 * speeds[1]];
         let pedestrians = pedestrians(&format!("2 -1 0 0  1 {vx} {vy}\n{x} {y} 0 0  1 {ux} {uy}"));
         let (window, _) = scene(&pedestrians);
         let mut people = hypotheses(&pedestrians);

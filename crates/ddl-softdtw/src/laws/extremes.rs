@@ -66,9 +66,7 @@ fn a_path_of_thousands_of_cells_along_one_row_and_one_column_is_not_lost() {
     let (gamma, steps) = (1.0, 2300);
     let off = (0.49 * std::f64::consts::LN_2).sqrt();
     let x: Vec<_> = (0..steps).map(|i| [if i == 0 { 0.0 } else { 10.0 }]).collect();
-    let y: Vec<_> = (0..steps)
-        .map(|j| [if j + 1 == steps { 10.0 + off } else { off }])
-        .collect();
+    let y: Vec<_> = (0..steps).map(|j| [if j + 1 == steps { 10.0 + off } else { off }]).collect();
     let expected = 2.0 * f64::from(steps - 1) * off * off;
     let value = dtw(gamma).value(&x, &y).unwrap();
     // Every other path costs at least 90 more.

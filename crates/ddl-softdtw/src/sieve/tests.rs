@@ -10,9 +10,7 @@ fn walks(count: usize, steps: usize, offset: f64) -> Vec<Vec<[f64; 2]>> {
         let (sin, cos) = (0.7 * i as f64).sin_cos();
         let speed = 0.013 * (i % 120) as f64;
         let sway = |j: usize| 0.2 * ((i * 31 + j * 17) as f64).sin() * speed;
-        (0..steps)
-            .map(|j| [speed * cos + sway(j) + offset, speed * sin - sway(j)])
-            .collect()
+        (0..steps).map(|j| [speed * cos + sway(j) + offset, speed * sin - sway(j)]).collect()
     };
     (0..count).map(walk).collect()
 }
@@ -69,10 +67,7 @@ fn scores_keep_their_error_bound() {
                 worst = worst.max(share);
                 accurate += 1;
             }
-            assert!(
-                accurate > 100,
-                "only {accurate} scores are accurate: {steps} steps, {gamma}"
-            );
+            assert!(accurate > 100, "only {accurate} scores are accurate: {steps} steps, {gamma}");
         }
     }
     assert!(worst < 1.0, "an error {worst} times its bound");

@@ -31,9 +31,7 @@ pub(super) fn temporal_attention(tokens: &Tensor, heads: i64) -> Tensor {
     let scores = key * (query * scale(width, heads));
     let scores = scores.sum_dim_intlist([-1i64].as_slice(), true, None);
     let weights = scores.softmax(0, scores.kind());
-    (value * weights)
-        .sum_dim_intlist([0i64].as_slice(), false, None)
-        .reshape([batch, pedestrians, width])
+    (value * weights).sum_dim_intlist([0i64].as_slice(), false, None).reshape([batch, pedestrians, width])
 }
 
 fn scale(width: i64, heads: i64) -> f64 {

@@ -22,19 +22,12 @@ impl TorchBackend {
     /// A pass with libtorch's own gradients, if any.
     pub(crate) fn new(parameters: &Parameters, mode: Mode) -> Self {
         let tensors = parameters.tensors.iter();
-        Self {
-            tensors: tensors.map(Tensor::shallow_clone).collect(),
-            mode,
-            shared: None,
-        }
+        Self { tensors: tensors.map(Tensor::shallow_clone).collect(), mode, shared: None }
     }
 
     /// A pass of training, with a [`gradient`](Self::gradient).
     pub(crate) fn training(parameters: &Parameters, mode: Mode) -> Self {
-        Self {
-            shared: Some(SharedWeights::default()),
-            ..Self::new(parameters, mode)
-        }
+        Self { shared: Some(SharedWeights::default()), ..Self::new(parameters, mode) }
     }
 
     /// The gradient of a loss of this pass with respect to all learned numbers, as one vector.
@@ -113,11 +106,7 @@ impl Backend for TorchBackend {
     }
 
     fn repeated(&self, x: &Rc<Tensor>, batch: usize) -> Rc<Tensor> {
-        if self.entries(x) == batch {
-            Rc::clone(x)
-        } else {
-            Rc::new(x.expand([batch as i64, -1, -1], false))
-        }
+        if self.entries(x) == batch { Rc::clone(x) } else { Rc::new(x.expand([batch as i64, -1, -1], false)) }
     }
 
     fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &Rc<AttentionBlocks>) -> Rc<Tensor> {

@@ -73,10 +73,7 @@ impl WindowBatch {
 
     /// All positions transformed by the images of the axes, the rows of `images` `[2, 2]`. Neighbours are kept.
     pub(crate) fn turned(&self, images: &Tensor) -> Self {
-        Self {
-            positions: self.positions.matmul(images),
-            ..self.shared()
-        }
+        Self { positions: self.positions.matmul(images), ..self.shared() }
     }
 
     /// The same batch, without copying.

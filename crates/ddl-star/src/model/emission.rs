@@ -52,19 +52,13 @@ impl<B: TensorBackend> Emission<B> {
                 dynamics.then(|| NoiseCovariance::of(noise_weight)),
             ),
         };
-        Self {
-            layer,
-            noise: backend.given(&rows),
-            covariance,
-        }
+        Self { layer, noise: backend.given(&rows), covariance }
     }
 
     /// The outputs for each pedestrian, (a, b, c) or (x, y), after all batch entries of all tokens. All pedestrians
     /// share the noise.
     pub(super) fn of(&self, backend: &B, tokens: &[B::Tokens]) -> Tensor {
-        let outputs = tokens
-            .iter()
-            .map(|token| backend.linear(self.layer, &backend.concatenate(token, &self.noise)));
+        let outputs = tokens.iter().map(|token| backend.linear(self.layer, &backend.concatenate(token, &self.noise)));
         let outputs = backend.outputs(&outputs.collect::<Vec<_>>());
         match &self.covariance {
             Some(covariance) => covariance.expected_factor(&outputs),
@@ -86,11 +80,7 @@ impl NoiseCovariance {
     fn of(weight: &Tensor) -> Self {
         let covariance = weight.matmul(&weight.transpose(0, 1));
         let c = |i: i64, j: i64| covariance.get(i).get(j);
-        Self {
-            c11: c(0, 0),
-            c12: c(0, 1),
-            c22: c(1, 1) + c(2, 2),
-        }
+        Self { c11: c(0, 0), c12: c(0, 1), c22: c(1, 1) + c(2, 2) }
     }
 
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).

@@ -81,13 +81,8 @@ pub(super) fn bounded_step(
         return positions - u * arriving * time.dt;
     }
     let later = top * (time.left - 1) as f64;
-    let smallest = (&arriving * MotionBounds::<f64>::MIN_SPEED_RATIO)
-        .maximum(&(&reach - later))
-        .minimum(&arriving);
-    let largest = (&arriving * MotionBounds::<f64>::MAX_SPEED_RATIO)
-        .minimum(&reach)
-        .minimum(top)
-        .maximum(&arriving);
+    let smallest = (&arriving * MotionBounds::<f64>::MIN_SPEED_RATIO).maximum(&(&reach - later)).minimum(&arriving);
+    let largest = (&arriving * MotionBounds::<f64>::MAX_SPEED_RATIO).minimum(&reach).minimum(top).maximum(&arriving);
     let clamp = |eigenvalue: &Tensor| eigenvalue.maximum(&smallest).minimum(&largest);
     let [a, b, c] = entries(factors);
     let neutral = neutral(&u.detach(), &arriving, &smallest, bounds, time);
@@ -157,11 +152,7 @@ impl SymmetricTensors {
         let radius = (half.square() + self.xy.square() + SMALLEST_RADIUS_SQUARED).sqrt();
         let (first, second) = (changed(&mean + &radius), changed(&mean - &radius));
         let (middle, stretch) = ((&first + &second) * 0.5, (first - second) * 0.5 / radius);
-        Self {
-            xx: &middle + &half * &stretch,
-            xy: &self.xy * &stretch,
-            yy: middle - half * stretch,
-        }
+        Self { xx: &middle + &half * &stretch, xy: &self.xy * &stretch, yy: middle - half * stretch }
     }
 }
 

@@ -26,11 +26,7 @@ impl GoalFrame {
         let distance = towards.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
         let near = distance.lt(SMALLEST_DISTANCE);
         let along = |axis: i64, near_goal: f64| (towards.narrow(-1, axis, 1) / &distance).masked_fill(&near, near_goal);
-        Self {
-            cos: along(0, 1.0),
-            sin: along(1, 0.0),
-            unit: own_motion::units(observed, time_step),
-        }
+        Self { cos: along(0, 1.0), sin: along(1, 0.0), unit: own_motion::units(observed, time_step) }
     }
 
     /// Vectors of the world in the axes and units of the pedestrians.

@@ -76,12 +76,7 @@ impl TorchNetwork {
         let output = Backbone::<KernelBackend>::output(&backbone);
         let initial = layout.initial(stream(seed, Stage::Weights, 0));
         Ok(Self {
-            layers: Layers {
-                config,
-                on_tensors: Box::new(backbone.clone()),
-                on_rows: Box::new(backbone),
-                output,
-            },
+            layers: Layers { config, on_tensors: Box::new(backbone.clone()), on_rows: Box::new(backbone), output },
             parameters: Parameters::new(layout, &initial, device, kind),
             device,
             kind,

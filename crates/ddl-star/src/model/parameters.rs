@@ -40,11 +40,7 @@ impl Parameters {
                 learned
             })
             .collect();
-        Self {
-            layout: Arc::new(layout),
-            tensors,
-            flat,
-        }
+        Self { layout: Arc::new(layout), tensors, flat }
     }
 
     /// Names, shapes and places.
@@ -62,9 +58,7 @@ impl Parameters {
     /// The tensor of that name.
     #[cfg(test)]
     pub(crate) fn get(&self, name: &str) -> Option<&Tensor> {
-        self.iter()
-            .find(|(candidate, _)| *candidate == name)
-            .map(|(_, tensor)| tensor)
+        self.iter().find(|(candidate, _)| *candidate == name).map(|(_, tensor)| tensor)
     }
 
     /// A copy of all learned parameters in single precision.
@@ -99,10 +93,8 @@ impl Parameters {
     pub(super) fn gradients_of(&self, loss: &Tensor, of: &[&Tensor]) -> Result<Gradients, tch::TchError> {
         let asked: Vec<&Tensor> = self.tensors.iter().chain(of.iter().copied()).collect();
         let found = Tensor::f_run_backward(&[loss], &asked, false, false)?;
-        let mut learned: Vec<Option<Tensor>> = found
-            .into_iter()
-            .map(|gradient| gradient.defined().then_some(gradient))
-            .collect();
+        let mut learned: Vec<Option<Tensor>> =
+            found.into_iter().map(|gradient| gradient.defined().then_some(gradient)).collect();
         let others = learned.split_off(self.tensors.len());
         Ok((learned, others))
     }

@@ -70,16 +70,8 @@ impl Reference {
             }
             let index = entry["index"].as_f64().unwrap();
             let shape: Vec<i64> = serde_json::from_value(entry["shape"].clone()).unwrap();
-            let scale = if shape.len() == 2 {
-                0.3 / (shape[1] as f64).sqrt()
-            } else {
-                0.05
-            };
-            let shift = if name.contains("norm") && name.ends_with("weight") {
-                1.0
-            } else {
-                0.0
-            };
+            let scale = if shape.len() == 2 { 0.3 / (shape[1] as f64).sqrt() } else { 0.05 };
+            let shift = if name.contains("norm") && name.ends_with("weight") { 1.0 } else { 0.0 };
             let values: Vec<f64> = (0..shape.iter().product())
                 .map(|k: i64| {
                     let phase = 0.37 * k as f64 + 1.3 * index + 0.11 * (k % 7) as f64;
@@ -89,9 +81,7 @@ impl Reference {
             let _guard = tch::no_grad_guard();
             let target = network.parameters().get(name).unwrap_or_else(|| panic!("no {name}"));
             assert_eq!(target.size(), shape, "{name}");
-            target
-                .shallow_clone()
-                .copy_(&Tensor::from_slice(&values).reshape(&shape));
+            target.shallow_clone().copy_(&Tensor::from_slice(&values).reshape(&shape));
             set += 1;
         }
         assert_eq!(set, network.parameters().iter().count());
@@ -120,15 +110,10 @@ fn agrees(kind: Kind, tolerance: f64) {
 
     let torch = TorchBackend::new(network.parameters(), Mode::Evaluate);
     let goal = reference.tensor("/true_goal", &[pedestrians, 2], kind);
-    let forecast = network
-        .layers
-        .teacher_forced(&batch, &goal, &noise, Engine::Torch(&torch));
+    let forecast = network.layers.teacher_forced(&batch, &goal, &noise, Engine::Torch(&torch));
     let expected = reference.tensor("/train_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&forecast, &expected);
-    assert!(
-        difference < tolerance,
-        "teacher-forced positions differ by {difference}"
-    );
+    assert!(difference < tolerance, "teacher-forced positions differ by {difference}");
 
     let loss = mean_squared_distance(&forecast, &batch.positions.narrow(0, 1, 19));
     let expected = reference.numbers("/train_forward/loss")[0];
@@ -138,17 +123,12 @@ fn agrees(kind: Kind, tolerance: f64) {
     for (name, tensor) in network.parameters().iter() {
         let expected = reference.0["train_forward"]["grad_norms"][name].as_f64().unwrap();
         let norm = tensor.grad().norm().double_value(&[]);
-        assert!(
-            (norm / expected - 1.0).abs() < 1e-3,
-            "gradient of {name}: {norm}, not {expected}"
-        );
+        assert!((norm / expected - 1.0).abs() < 1e-3, "gradient of {name}: {norm}, not {expected}");
     }
 
     let goal = reference.tensor("/estimated_goal", &[1, pedestrians, 2], kind);
     let _guard = tch::no_grad_guard();
-    let rollout = network
-        .layers
-        .roll_out(&batch, &goal, &noise, StepRule::Euler, Engine::Torch(&torch));
+    let rollout = network.layers.roll_out(&batch, &goal, &noise, StepRule::Euler, Engine::Torch(&torch));
     let rolled = rollout.positions.squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));

@@ -63,10 +63,7 @@ impl Layers {
         let scenes = backbone.scene(backend, &centred, &backend.seen(batch, 0..steps));
         let scenes = backend.each_entry(&scenes);
         let guidance = self.guidance(batch, goals, StepRule::Euler);
-        let before = Tensor::cat(
-            &[positions.narrow(0, 0, 1), positions.narrow(0, 0, steps as i64 - 1)],
-            0,
-        );
+        let before = Tensor::cat(&[positions.narrow(0, 0, 1), positions.narrow(0, 0, steps as i64 - 1)], 0);
         let relative = backend.each_entry(&backend.given(&guidance.seen(&positions, &before)));
         let mut memory = Memory::default();
         let features: Vec<B::Tokens> = (0..steps)
@@ -128,9 +125,8 @@ impl Layers {
         }
         let seen = backend.seen(batch, OBSERVED - 1..OBSERVED);
         let mut position = observed.narrow(0, last, 1).expand([hypotheses, -1, -1], false);
-        let mut sum = observed
-            .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
-            .expand([hypotheses, -1, -1], false);
+        let mut sum =
+            observed.sum_dim_intlist([0i64].as_slice(), true, None::<Kind>).expand([hypotheses, -1, -1], false);
         let mut path = Vec::with_capacity(HORIZON);
         let mut factors = Vec::with_capacity(HORIZON);
         for t in OBSERVED..OBSERVED + HORIZON {
@@ -149,10 +145,7 @@ impl Layers {
                 features = backbone.step(backend, &mut memory, &relative, &scene, &seen);
             }
         }
-        Rollout {
-            positions: Tensor::stack(&path, 0),
-            factors: shaped.then(|| Tensor::stack(&factors, 0)),
-        }
+        Rollout { positions: Tensor::stack(&path, 0), factors: shaped.then(|| Tensor::stack(&factors, 0)) }
     }
 
     /// Goals and frames of the pedestrians for this network. Shapes: `batch` of at least 8 frames, unless the network
@@ -162,11 +155,7 @@ impl Layers {
         let time_step = config.time_step;
         let observed = || batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = || batch.positions.narrow(0, OBSERVED as i64 - 1, 1);
-        let goals = if goals.dim() == 2 {
-            goals.unsqueeze(0)
-        } else {
-            goals.shallow_clone()
-        };
+        let goals = if goals.dim() == 2 { goals.unsqueeze(0) } else { goals.shallow_clone() };
         let frame = match config.frame {
             NetworkFrame::World => None,
             NetworkFrame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
@@ -175,10 +164,7 @@ impl Layers {
             reference: if config.variant.goal_shift() { goals } else { last() },
             frame,
             dynamics: config.variant.dynamics(),
-            constants: FlowConstants {
-                sigma: config.sigma,
-                time_step,
-            },
+            constants: FlowConstants { sigma: config.sigma, time_step },
             bounds: match rule {
                 StepRule::Euler => None,
                 StepRule::Bounded => Some(StepBounds {

@@ -34,10 +34,7 @@ impl SceneRows {
             length,
             pedestrians: Tensor::from_slice(&pedestrians).to_device(device),
             places: Tensor::from_slice(&places).to_device(device),
-            shares: Tensor::from_slice(&shares)
-                .reshape([scenes, length, 1])
-                .to_kind(kind)
-                .to_device(device),
+            shares: Tensor::from_slice(&shares).reshape([scenes, length, 1]).to_kind(kind).to_device(device),
         }
     }
 

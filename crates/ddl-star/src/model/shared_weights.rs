@@ -83,17 +83,8 @@ impl SharedWeights {
     pub(super) fn used(&self, map: LearnedMap, x: &Tensor, tensors: &[Tensor], weight: usize) -> Tensor {
         let [of_weight, bias] = [weight, weight + 1].map(|index| tensors[index].detach());
         let output = map.of(x, &of_weight, &bias);
-        let output = if output.requires_grad() {
-            output
-        } else {
-            output.set_requires_grad(true)
-        };
-        self.0.borrow_mut().push(Use {
-            map,
-            weight,
-            input: x.detach(),
-            output: output.shallow_clone(),
-        });
+        let output = if output.requires_grad() { output } else { output.set_requires_grad(true) };
+        self.0.borrow_mut().push(Use { map, weight, input: x.detach(), output: output.shallow_clone() });
         output
     }
 

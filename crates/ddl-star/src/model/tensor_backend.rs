@@ -91,10 +91,7 @@ impl TensorBackend for KernelBackend {
     }
 
     fn seen(&self, batch: &WindowBatch, steps: Range<usize>) -> VisibleScenes {
-        VisibleScenes {
-            scenes: Arc::clone(&batch.scenes),
-            steps,
-        }
+        VisibleScenes { scenes: Arc::clone(&batch.scenes), steps }
     }
 }
 
@@ -139,10 +136,7 @@ pub(crate) struct KernelPass {
 impl KernelPass {
     /// A pass with dropout by this seed. `noise_weight` is of `TorchNetwork::copy_noise_weight`.
     pub(crate) fn new(kernels: &Arc<Kernels>, mode: Mode, seed: u64, noise_weight: Tensor) -> Self {
-        Self {
-            backend: KernelBackend::training(Arc::clone(kernels), mode, seed),
-            noise_weight,
-        }
+        Self { backend: KernelBackend::training(Arc::clone(kernels), mode, seed), noise_weight }
     }
 
     /// The gradient of `loss` with respect to all `count` learned numbers of the network.

@@ -25,10 +25,7 @@ pub(crate) fn winner_takes_all(proposals: &Proposals, future: &Tensor, weights: 
     };
     let off_the_end = length(&proposals.ends - end);
     let distance = if weights.waypoints > 0.0 {
-        let steps: Vec<i64> = WAYPOINTS
-            .iter()
-            .map(|share| (share * HORIZON as f64) as i64 - 1)
-            .collect();
+        let steps: Vec<i64> = WAYPOINTS.iter().map(|share| (share * HORIZON as f64) as i64 - 1).collect();
         let index = Tensor::from_slice(&steps).to_device(future.device());
         let on_the_way = future.index_select(2, &index).unsqueeze(2);
         let off = length(&proposals.waypoints - on_the_way);
@@ -38,24 +35,13 @@ pub(crate) fn winner_takes_all(proposals: &Proposals, future: &Tensor, weights: 
     };
     let (sorted, order) = distance.sort(-1, false);
     let ends = distance.size()[2];
-    let share: Vec<f64> = (0..ends)
-        .map(|rank| (weights.relaxed - rank as f64).clamp(0.0, 1.0))
-        .collect();
+    let share: Vec<f64> = (0..ends).map(|rank| (weights.relaxed - rank as f64).clamp(0.0, 1.0)).collect();
     let total: f64 = share.iter().sum();
-    let share = Tensor::from_slice(&share)
-        .to_kind(distance.kind())
-        .to_device(distance.device())
-        / total;
+    let share = Tensor::from_slice(&share).to_kind(distance.kind()).to_device(distance.device()) / total;
     let members = distance.size()[0] as f64;
-    let nearest = (sorted * share)
-        .sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>)
-        .mean(None::<Kind>);
+    let nearest = (sorted * share).sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>).mean(None::<Kind>);
     let winner = order.narrow(-1, 0, 1);
-    let surprise = -proposals
-        .logits
-        .log_softmax(-1, None::<Kind>)
-        .gather(-1, &winner, false)
-        .mean(None::<Kind>);
+    let surprise = -proposals.logits.log_softmax(-1, None::<Kind>).gather(-1, &winner, false).mean(None::<Kind>);
     let loss = (&nearest + surprise * weights.probability) * members;
     (loss, nearest)
 }
@@ -78,11 +64,7 @@ mod tests {
         };
         let both = |relaxed: f64, probability: f64| {
             let waypoints = 0.0;
-            let weights = LossWeights {
-                relaxed,
-                waypoints,
-                probability,
-            };
+            let weights = LossWeights { relaxed, waypoints, probability };
             winner_takes_all(&proposals, &future, weights)
         };
         let loss = |relaxed: f64| both(relaxed, 0.0).0.double_value(&[]);

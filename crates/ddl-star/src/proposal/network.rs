@@ -48,22 +48,13 @@ impl TorchProposals {
         let layers = ProposalLayers::new(&mut layout, &config);
         let initial = layout.initial(stream(seed, Stage::ProposalWeights, 0));
         let parameters = Parameters::new(layout, &initial, device.0, kind);
-        Ok(Self {
-            config,
-            device,
-            kind,
-            parameters,
-            layers,
-        })
+        Ok(Self { config, device, kind, parameters, layers })
     }
 
     /// This network, computed by libtorch, as a `ProposeEndpoints`.
     #[must_use]
     pub fn into_proposer(self) -> Box<dyn ProposeEndpoints> {
-        Box::new(TorchProposer {
-            config: self.config.clone(),
-            network: Mutex::new(self),
-        })
+        Box::new(TorchProposer { config: self.config.clone(), network: Mutex::new(self) })
     }
 
     /// y = x W + b of every member.
@@ -99,9 +90,7 @@ impl TorchProposals {
                 let weights = proposals.logits.softmax(-1, Kind::Double) / members;
                 let ends: Vec<Position> = arrays(&proposals.ends.transpose(0, 1))?;
                 let weights = arrays::<1>(&weights.transpose(0, 1))?.into_flattened();
-                let pairs = ends
-                    .chunks_exact(per_pedestrian)
-                    .zip(weights.chunks_exact(per_pedestrian));
+                let pairs = ends.chunks_exact(per_pedestrian).zip(weights.chunks_exact(per_pedestrian));
                 let pairs = pairs.map(|(endpoints, weights)| (endpoints.to_vec(), weights.to_vec()));
                 let listed = pairs.map(|(endpoints, weights)| ProposedEndpoints { endpoints, weights });
                 Ok(listed.collect())
@@ -117,9 +106,7 @@ impl TorchProposals {
                             *weight *= 1.0 - share;
                         }
                         proposed.endpoints.extend(other.endpoints);
-                        proposed
-                            .weights
-                            .extend(other.weights.iter().map(|weight| weight * share));
+                        proposed.weights.extend(other.weights.iter().map(|weight| weight * share));
                     }
                 }
             }
@@ -163,10 +150,7 @@ impl TorchProposals {
         let size = views.own.size();
         let (m, b) = (size[0], size[1]);
         let own_velocity = self.velocities(&views.own);
-        let features = Tensor::cat(
-            &[views.own.reshape([m, b, -1]) * 0.5, own_velocity.reshape([m, b, -1])],
-            -1,
-        );
+        let features = Tensor::cat(&[views.own.reshape([m, b, -1]) * 0.5, own_velocity.reshape([m, b, -1])], -1);
         let code = self.affine(self.layers.own, &features).gelu("none");
         let (features, distance) = self.neighbour_features(views);
         let seen = &views.present * distance.lt(self.config.neighbour_range);
@@ -213,11 +197,7 @@ impl TorchProposals {
             .to_device(self.device.0)
             .reshape([WAYPOINTS.len() as i64, 1]);
         let on_the_way = ends.unsqueeze(3) * shares;
-        Proposals {
-            waypoints: readings.waypoints + on_the_way,
-            ends,
-            logits: readings.logits,
-        }
+        Proposals { waypoints: readings.waypoints + on_the_way, ends, logits: readings.logits }
     }
 
     /// Attention of a pedestrian over others, with an additional empty entry of score 0. Shapes: `code` `[M, B,
@@ -246,12 +226,8 @@ impl TorchProposals {
         let scores = scores.masked_fill(&hidden, f64::NEG_INFINITY);
         // The additional entry of score 0.
         let empty = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.0));
-        let attention = Tensor::cat(&[scores, empty], 2)
-            .softmax(2, None::<Kind>)
-            .narrow(2, 0, slots);
-        (attention.unsqueeze(-1) * value)
-            .sum_dim_intlist([2i64].as_slice(), false, None::<Kind>)
-            .reshape([m, b, near])
+        let attention = Tensor::cat(&[scores, empty], 2).softmax(2, None::<Kind>).narrow(2, 0, slots);
+        (attention.unsqueeze(-1) * value).sum_dim_intlist([2i64].as_slice(), false, None::<Kind>).reshape([m, b, near])
     }
 
     /// Shapes: -> `[M, B, G, 17]`.

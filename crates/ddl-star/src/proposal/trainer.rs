@@ -67,11 +67,7 @@ impl ProposalTrainer {
         let (device, kind) = (network.device.0, network.kind);
         let both: Vec<&ProposalExample> = examples.iter().chain(reversed).collect();
         let views = Views::new(both.iter().map(|example| &example.view), &network.config, device, kind)?;
-        let future: Vec<f64> = both
-            .iter()
-            .flat_map(|example| example.future.as_flattened())
-            .copied()
-            .collect();
+        let future: Vec<f64> = both.iter().flat_map(|example| example.future.as_flattened()).copied().collect();
         let future = tensor(&future, &[both.len() as i64, -1, 2], (kind, device))?;
         Ok(Self {
             adam: Adam::new(network.parameters()),
@@ -89,10 +85,7 @@ impl ProposalTrainer {
     pub fn steps(&self) -> WorkDone {
         let memory = self.network.config.memory.as_ref();
         let of_memory = memory.map_or(0, |_| self.training.memory.steps);
-        WorkDone {
-            done: self.progress.steps,
-            total: self.training.steps + of_memory,
-        }
+        WorkDone { done: self.progress.steps, total: self.training.steps + of_memory }
     }
 
     /// Whether all steps are done.
@@ -182,10 +175,7 @@ impl ProposalTrainer {
         let decay = if done == 0 { 0.0 } else { REPORTED };
         self.progress.distance = decay * self.progress.distance + (1.0 - decay) * distance;
         self.progress.steps += 1;
-        Ok(ProposalStep {
-            done: self.progress.steps,
-            distance: self.progress.distance,
-        })
+        Ok(ProposalStep { done: self.progress.steps, distance: self.progress.distance })
     }
 
     /// Fixes the rest of the network at the mean of its weights. No gradient reaches it, and without moments Adam does
@@ -206,13 +196,7 @@ impl ProposalTrainer {
         // The reversed examples come after the others.
         let reversed = row >= self.onward;
         let example = if reversed { row - self.onward } else { row };
-        Err(StarError::ProposalNonFinite {
-            step,
-            quantity,
-            value,
-            example,
-            reversed,
-        })
+        Err(StarError::ProposalNonFinite { step, quantity, value, example, reversed })
     }
 
     /// The rows `[M, B]` of a step, drawn for each member, and their augmented views and futures.
@@ -227,9 +211,7 @@ impl ProposalTrainer {
                 rng.random_range(if backwards { onward..examples } else { 0..onward })
             })
             .collect();
-        let rows = Tensor::from_slice(&rows)
-            .reshape([members, batch])
-            .to_device(self.future.device());
+        let rows = Tensor::from_slice(&rows).reshape([members, batch]).to_device(self.future.device());
         let (views, future) = (self.views.rows(&rows), rows_of(&self.future, &rows));
         // Hold the lock from seeding to the last draw.
         let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);

@@ -36,16 +36,9 @@ pub(crate) fn save(
     origin: &Origin,
     path: &Path,
 ) -> Result<(), StarError> {
-    let state = [
-        (WEIGHTS, &parameters.flat),
-        (FIRST_MOMENT, &adam.first_moment),
-        (SECOND_MOMENT, &adam.second_moment),
-    ];
-    let mut tensors = state
-        .iter()
-        .chain(vectors)
-        .map(|(name, tensor)| stored(name, tensor))
-        .collect::<Result<Vec<_>, _>>()?;
+    let state = [(WEIGHTS, &parameters.flat), (FIRST_MOMENT, &adam.first_moment), (SECOND_MOMENT, &adam.second_moment)];
+    let mut tensors =
+        state.iter().chain(vectors).map(|(name, tensor)| stored(name, tensor)).collect::<Result<Vec<_>, _>>()?;
     tensors.push(StoredTensor {
         name: PROGRESS.to_owned(),
         shape: vec![progress.len()],

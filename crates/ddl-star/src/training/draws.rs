@@ -26,11 +26,7 @@ impl StepDraw {
     /// The same draws in other tensors.
     #[cfg(target_os = "linux")]
     pub(crate) fn copied(&self) -> Self {
-        Self {
-            noise: self.noise.copy(),
-            turn: self.turn.as_ref().map(Tensor::copy),
-            ..*self
-        }
+        Self { noise: self.noise.copy(), turn: self.turn.as_ref().map(Tensor::copy), ..*self }
     }
 
     /// Takes the numbers of another step into the same tensors.
@@ -57,24 +53,11 @@ impl StepDraw {
         let noise: Vec<f64> = (0..width).map(|_| rng.sample(StandardNormal)).collect();
         let kernels = rng.next_u64();
         let turn = (config.rotate || config.mirror).then(|| {
-            let rotation = if config.rotate {
-                schedule.rotation(step)
-            } else {
-                Rotation::new(0.0)
-            };
-            let side = if config.mirror && rng.random::<bool>() {
-                -1.0
-            } else {
-                1.0
-            };
+            let rotation = if config.rotate { schedule.rotation(step) } else { Rotation::new(0.0) };
+            let side = if config.mirror && rng.random::<bool>() { -1.0 } else { 1.0 };
             [rotation.apply([1.0, 0.0]), rotation.apply([0.0, side])]
         });
         let turn = turn.map(|images| tensor(images.as_flattened(), &[2, 2], options));
-        Ok(Self {
-            libtorch,
-            kernels,
-            noise: tensor(&noise, &[1, width], options)?,
-            turn: turn.transpose()?,
-        })
+        Ok(Self { libtorch, kernels, noise: tensor(&noise, &[1, width], options)?, turn: turn.transpose()? })
     }
 }

@@ -7,10 +7,7 @@ use tch::{Kind, Tensor};
 /// # Shapes
 /// Both `[T, P, 2]` -> scalar, in square metres.
 pub(crate) fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
-    (forecast - truth)
-        .square()
-        .sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>)
-        .mean(None::<Kind>)
+    (forecast - truth).square().sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>).mean(None::<Kind>)
 }
 
 /// Distance between forecast and true positions, averaged over pedestrians and steps: the average displacement error.
@@ -21,7 +18,5 @@ pub(crate) fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor
 /// # Numerics
 /// The derivative is 0 where both are equal.
 pub(crate) fn mean_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
-    (forecast - truth)
-        .norm_scalaropt_dim(2, [-1i64].as_slice(), false)
-        .mean(None::<Kind>)
+    (forecast - truth).norm_scalaropt_dim(2, [-1i64].as_slice(), false).mean(None::<Kind>)
 }

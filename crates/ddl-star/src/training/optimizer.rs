@@ -18,11 +18,7 @@ pub(crate) struct Adam {
 impl Adam {
     /// Initial state for a network's parameters.
     pub(crate) fn new(parameters: &Parameters) -> Self {
-        Self {
-            steps: 0,
-            first_moment: parameters.flat.zeros_like(),
-            second_moment: parameters.flat.zeros_like(),
-        }
+        Self { steps: 0, first_moment: parameters.flat.zeros_like(), second_moment: parameters.flat.zeros_like() }
     }
 
     /// One step against `gradient`, whose norm is `norm`, clipped to norm `clip`. Shapes: `gradient` has

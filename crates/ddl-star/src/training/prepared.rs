@@ -42,10 +42,7 @@ impl TrainingBatch {
 
     /// The batch with all positions transformed by the images of the axes, the rows of `images` `[2, 2]`.
     pub(crate) fn turned(&self, images: &Tensor) -> Self {
-        Self {
-            scenes: self.scenes.turned(images),
-            goals: self.goals.matmul(images),
-        }
+        Self { scenes: self.scenes.turned(images), goals: self.goals.matmul(images) }
     }
 
     /// Adds a normal error to every observed coordinate, with a standard deviation for each pedestrian that is uniform
@@ -58,17 +55,11 @@ impl TrainingBatch {
         let deviations = Tensor::rand([1, observed.size()[1], 1], options) * jitter;
         let observed = &observed + observed.randn_like() * deviations;
         let positions = Tensor::cat(&[observed, future], 0);
-        Self {
-            scenes: WindowBatch { positions, ..scenes },
-            goals,
-        }
+        Self { scenes: WindowBatch { positions, ..scenes }, goals }
     }
 
     pub(crate) fn shared(&self) -> Self {
-        Self {
-            scenes: self.scenes.shared(),
-            goals: self.goals.shallow_clone(),
-        }
+        Self { scenes: self.scenes.shared(), goals: self.goals.shallow_clone() }
     }
 }
 
@@ -82,15 +73,7 @@ impl PreparedBatches {
         part: Option<usize>,
         (device, kind): (Device, Kind),
     ) -> Self {
-        Self {
-            windows,
-            goals,
-            neighbour_box,
-            device,
-            kind,
-            part,
-            made: (0..count).map(|_| OnceCell::new()).collect(),
-        }
+        Self { windows, goals, neighbour_box, device, kind, part, made: (0..count).map(|_| OnceCell::new()).collect() }
     }
 
     pub(crate) fn window(&self, index: usize) -> &Window {
@@ -106,9 +89,7 @@ impl PreparedBatches {
         }
         let sizes: Vec<usize> = windows.iter().map(|&index| self.windows[index].len()).collect();
         let parts = parts(&sizes, self.part.unwrap_or(usize::MAX)).into_iter();
-        let parts = parts
-            .map(|part| self.part_of(&windows[part]))
-            .collect::<Result<_, _>>()?;
+        let parts = parts.map(|part| self.part_of(&windows[part])).collect::<Result<_, _>>()?;
         Ok(place.get_or_init(|| parts))
     }
 
@@ -181,9 +162,7 @@ mod tests {
         let (device, kind) = (Device::Cpu, Kind::Double);
         let indices: Vec<usize> = (0..windows.len()).collect();
         let prepared = PreparedBatches::new((windows, None), 1, 10.0, None, (device, kind));
-        let [exact] = prepared.batch(0, &indices).unwrap() else {
-            panic!("one part")
-        };
+        let [exact] = prepared.batch(0, &indices).unwrap() else { panic!("one part") };
         tch::manual_seed(7);
         let off = exact.shared().jittered(0.05);
         let moved = &off.scenes.positions - &exact.scenes.positions;

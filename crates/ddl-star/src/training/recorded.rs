@@ -68,11 +68,7 @@ impl RecordedSteps {
             let (recording, computed) = self.recorder.record(|| compute(inputs));
             let (loss, gradient) = computed?;
             let loss = loss.detach();
-            *step = BatchStep::Recorded {
-                recording,
-                loss,
-                gradient,
-            };
+            *step = BatchStep::Recorded { recording, loss, gradient };
             self.recorded += 1;
         }
         if let Some(inputs) = &mut self.inputs {
@@ -80,11 +76,7 @@ impl RecordedSteps {
         }
         match step {
             BatchStep::Computed(_) => compute(draw),
-            BatchStep::Recorded {
-                recording,
-                loss,
-                gradient,
-            } => {
+            BatchStep::Recorded { recording, loss, gradient } => {
                 recording.replay();
                 Ok((loss.shallow_clone(), gradient.shallow_clone()))
             }

@@ -37,15 +37,9 @@ impl Schedule {
             batches.push(batch);
         }
         let steps_per_epoch = config.pedestrians_per_epoch.map_or(batches.len(), |pedestrians| {
-            pedestrians
-                .div_ceil(config.batch_pedestrians)
-                .clamp(1, batches.len().max(1))
+            pedestrians.div_ceil(config.batch_pedestrians).clamp(1, batches.len().max(1))
         });
-        Self {
-            batches,
-            steps_per_epoch,
-            seed: config.seed,
-        }
+        Self { batches, steps_per_epoch, seed: config.seed }
     }
 
     pub(crate) fn batch_index(&self, step: u64) -> usize {

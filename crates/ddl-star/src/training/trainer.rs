@@ -126,10 +126,7 @@ impl Trainer {
 
     /// Steps over all epochs.
     pub fn steps(&self) -> WorkDone {
-        WorkDone {
-            done: self.progress.steps,
-            total: (self.schedule.steps_per_epoch * self.config.epochs) as u64,
-        }
+        WorkDone { done: self.progress.steps, total: (self.schedule.steps_per_epoch * self.config.epochs) as u64 }
     }
 
     /// Saves weights, optimiser and progress to one file.
@@ -150,11 +147,7 @@ impl Trainer {
         let total = self.steps().total;
         let parameters = self.network.parameters();
         let (steps, [_, loss_sum, seconds]) = checkpoint::load(parameters, &mut self.adam, &[], total, origin, path)?;
-        self.progress = TrainerProgress {
-            steps,
-            loss_sum,
-            seconds,
-        };
+        self.progress = TrainerProgress { steps, loss_sum, seconds };
         Ok(())
     }
 
@@ -213,9 +206,7 @@ impl Trainer {
             drop(generator);
             return gradient::by_kernels(network, kernels, objective, varied, draw);
         }
-        let [batch] = parts else {
-            unreachable!("without kernels, batches are whole")
-        };
+        let [batch] = parts else { unreachable!("without kernels, batches are whole") };
         let compute = |draw: &StepDraw| {
             let batch = batch.varied(draw.turn.as_ref(), jitter);
             gradient::by_torch(network, objective, &batch, draw.noise.shallow_clone())
@@ -236,13 +227,7 @@ impl Trainer {
             let window = self.batches.window(index);
             format!("{}@{} and following", window.recording(), window.start_frame())
         });
-        Err(StarError::NonFinite {
-            epoch: self.completed_epochs() + 1,
-            batch,
-            quantity,
-            value,
-            windows,
-        })
+        Err(StarError::NonFinite { epoch: self.completed_epochs() + 1, batch, quantity, value, windows })
     }
 
     fn report(&mut self, step: u64, loss: f64) -> StepReport {
@@ -260,11 +245,7 @@ impl Trainer {
             (self.progress.loss_sum, self.progress.seconds) = (0.0, 0.0);
             report
         });
-        StepReport {
-            epoch,
-            loss,
-            finished_epoch,
-        }
+        StepReport { epoch, loss, finished_epoch }
     }
 }
 
@@ -275,10 +256,7 @@ fn check_goals(windows: &[Window], goals: &[Vec<Position>]) -> Result<(), Networ
         return Err(NetworkError::shape("training", expected, got));
     }
     let counts = windows.iter().map(Window::len).zip(goals.iter().map(Vec::len));
-    match counts
-        .enumerate()
-        .find(|(_, (pedestrians, goals))| pedestrians != goals)
-    {
+    match counts.enumerate().find(|(_, (pedestrians, goals))| pedestrians != goals) {
         None => Ok(()),
         Some((w, (pedestrians, goals))) => {
             let expected = format!("{pedestrians} goals for window {w}, one for each pedestrian");

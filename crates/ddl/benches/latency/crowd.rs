@@ -23,18 +23,11 @@ pub(crate) fn measure(device: DeviceChoice, clock: ClockId, only_one: bool, size
     println!("pedestrians | 20 hypotheses, s | ms a pedestrian | one, s | a live frame, one, s | MiB at most");
     for &pedestrians in sizes {
         let window = crowd(pedestrians)?;
-        let all = if only_one {
-            f64::NAN
-        } else {
-            least(clock, || Ok(model.forecast(&window).map(drop)?))?
-        };
+        let all = if only_one { f64::NAN } else { least(clock, || Ok(model.forecast(&window).map(drop)?))? };
         let one = least(clock, || Ok(One(&model).forecast(&window).map(drop)?))?;
         let frame = live_frame(clock, &model, &window)?;
         let each = 1e3 * all / pedestrians as f64;
-        println!(
-            "{pedestrians} | {all:.4} | {each:.3} | {one:.4} | {frame:.4} | {}",
-            most_memory()?
-        );
+        println!("{pedestrians} | {all:.4} | {each:.3} | {one:.4} | {frame:.4} | {}", most_memory()?);
     }
     Ok(())
 }

@@ -101,14 +101,9 @@ fn forecasts(dataset: &Dataset, segments: usize, runs: usize) -> Result<()> {
     show("whole forecast", &|| Ok(model.forecast(&window).map(drop)?))?;
     show("its goals", &|| Ok(model.goal_model().goals(windows).map(drop)?))?;
     show("one hypothesis", &|| Ok(model.forecast_central(windows).map(drop)?))?;
-    show("model hotel, whose network is the Transformer", &|| {
-        Ok(transformer.forecast(&window).map(drop)?)
-    })?;
+    show("model hotel, whose network is the Transformer", &|| Ok(transformer.forecast(&window).map(drop)?))?;
     let remembering = || Ok(model.forecast(&memory.recalling(window.clone(), count)).map(drop)?);
-    show(
-        &format!("with a memory of {} segments", memory.segments()),
-        &remembering,
-    )
+    show(&format!("with a memory of {} segments", memory.segments()), &remembering)
 }
 
 /// A memory of all simulated scenes, filled with other simulated crowds up to this number of segments.

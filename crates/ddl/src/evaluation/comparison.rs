@@ -24,10 +24,7 @@ impl BestOf20Errors {
     fn of(blocks: &[BlockErrors]) -> Self {
         let pedestrians: usize = blocks.iter().map(|block| block.pedestrians).sum();
         let mean = |metric: fn(&BlockErrors) -> f64| blocks.iter().map(metric).sum::<f64>() / pedestrians.max(1) as f64;
-        Self {
-            min_ade: mean(|block| block.min_ade),
-            min_fde: mean(|block| block.min_fde),
-        }
+        Self { min_ade: mean(|block| block.min_ade), min_fde: mean(|block| block.min_fde) }
     }
 }
 
@@ -60,10 +57,7 @@ pub fn compare_on_validation(
     mut observe: impl FnMut(WorkDone) -> ControlFlow<()>,
 ) -> Result<Comparison, DdlError> {
     let windows = TestSet::kept_by(run.goal_model(), dataset, None)?.windows;
-    let mut progress = WorkDone {
-        done: 0,
-        total: 2 * windows.len() as u64,
-    };
+    let mut progress = WorkDone { done: 0, total: 2 * windows.len() as u64 };
     let mut measured = |model: &Ddl| -> Result<Vec<BlockErrors>, DdlError> {
         let mut forecasts = Vec::new();
         for some in parts(&windows) {

@@ -108,14 +108,7 @@ pub fn evaluate(
     if asked(&WATCHING) {
         model.goal_model().recalled_per_pedestrian()?;
     }
-    let mut measuring = Measuring {
-        model,
-        test: &test,
-        request,
-        observe,
-        done: 0,
-        total,
-    };
+    let mut measuring = Measuring { model, test: &test, request, observe, done: 0, total };
     let mut rows = Vec::new();
     if asked(&[Protocol::Published]) {
         rows.extend(measuring.published()?);
@@ -203,11 +196,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             };
             Ok(Forecasts {
                 model: variants.iter().map(towards).collect::<Result<_, _>>()?,
-                lines: if lines_asked {
-                    straight_lines(windows, weighted(&goals)?)?
-                } else {
-                    Vec::new()
-                },
+                lines: if lines_asked { straight_lines(windows, weighted(&goals)?)? } else { Vec::new() },
             })
         })?;
         let mut evaluation = Evaluation::default();
@@ -268,12 +257,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             .headline_indices()
             .map(|index| (self.test.windows[index].clone(), forecasts[index].clone()))
             .unzip();
-        Ok(gallery::moments(
-            &self.test.fold,
-            &self.model.name(),
-            &windows,
-            &forecasts,
-        )?)
+        Ok(gallery::moments(&self.test.fold, &self.model.name(), &windows, &forecasts)?)
     }
 
     /// Evaluates the best epoch, then the last epoch, then also without the future frame, then also without noise.
@@ -286,16 +270,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let report = |pedestrians| self.report(pedestrians, protocol);
         let [best, last] = Published::best_on_test_and_last(model, &reading_on, &windows, report)?;
         let mut estimators = vec![reading_on];
-        let variant = |network, estimator, noise, change| OracleVariant {
-            network,
-            estimator,
-            noise,
-            change,
-        };
-        let mut variants = vec![
-            variant(&best, 0, best.samples, None),
-            variant(&last, 0, last.samples, Some("of its last epoch")),
-        ];
+        let variant = |network, estimator, noise, change| OracleVariant { network, estimator, noise, change };
+        let mut variants =
+            vec![variant(&best, 0, best.samples, None), variant(&last, 0, last.samples, Some("of its last epoch"))];
         if model.config().star.variant.uses_goal() {
             estimators.push(estimator(QuerySpan::Observed)?);
             let change = "of its last epoch without the future frame";
@@ -342,10 +319,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         variants: usize,
         forecast_some: impl Fn(&[Window]) -> Result<Forecasts, ForecastError>,
     ) -> Result<Forecasts, DdlError> {
-        let mut forecasts = Forecasts {
-            model: vec![Vec::new(); variants],
-            lines: Vec::new(),
-        };
+        let mut forecasts = Forecasts { model: vec![Vec::new(); variants], lines: Vec::new() };
         for part in parts(windows) {
             let some = forecast_some(&protocol.visible(part))?;
             for (forecasts, some) in forecasts.model.iter_mut().zip(some.model) {
@@ -358,12 +332,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     }
 
     fn rows(&self, protocol: Protocol) -> ResultRows<'_> {
-        ResultRows {
-            model: self.model,
-            test: self.test,
-            protocol,
-            commit: &self.request.commit,
-        }
+        ResultRows { model: self.model, test: self.test, protocol, commit: &self.request.commit }
     }
 
     fn asked(&self, protocol: Protocol) -> bool {
@@ -372,13 +341,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
 
     fn report(&mut self, pedestrians: usize, protocol: Protocol) -> Result<(), DdlError> {
         self.done += pedestrians;
-        let progress = EvaluationProgress {
-            pedestrians: WorkDone {
-                done: self.done as u64,
-                total: self.total as u64,
-            },
-            protocol,
-        };
+        let progress =
+            EvaluationProgress { pedestrians: WorkDone { done: self.done as u64, total: self.total as u64 }, protocol };
         match (self.observe)(&progress) {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(DdlError::Interrupted),

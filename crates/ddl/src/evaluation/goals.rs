@@ -116,10 +116,7 @@ pub fn evaluate_goals(
     }
     let likelihoods = pairs.iter().map(|(_, set, end)| (set.weights(), set.nearest(*end)));
     let rule = rule.map_or(String::new(), |rule| format!("{rule} rule"));
-    let words = test.subset.map_or_else(
-        || format!("all test windows, {rule}"),
-        |subset| format!("{subset}, {rule}"),
-    );
+    let words = test.subset.map_or_else(|| format!("all test windows, {rule}"), |subset| format!("{subset}, {rule}"));
     Ok(GoalEvaluation {
         fold: test.fold,
         goals: model.words(),
@@ -145,10 +142,7 @@ mod tests {
         let set = GoalSet::from_endpoints(&frame, &[[0.0, -3.0], [3.0, 1.0]], &[0.4, 0.6], 2).unwrap();
         let errors = GoalErrors::of([(&set, [0.0, -3.0]), (&set, [3.0, 4.0])].into_iter());
         assert_eq!(errors.pedestrians, 2);
-        assert!(
-            (errors.oracle_fde - 1.5).abs() < 1e-12 && (errors.likeliest_fde - 4.0).abs() < 1e-12,
-            "{errors:?}"
-        );
+        assert!((errors.oracle_fde - 1.5).abs() < 1e-12 && (errors.likeliest_fde - 4.0).abs() < 1e-12, "{errors:?}");
         assert_eq!(GoalErrors::of([].into_iter()), GoalErrors::default());
     }
 }

@@ -52,10 +52,7 @@ impl Published {
              `single`",
             ));
         };
-        let samples = Noise::Draws {
-            count: SAMPLES,
-            seed: model.config().training.seed,
-        };
+        let samples = Noise::Draws { count: SAMPLES, seed: model.config().training.seed };
         let with = |weights: PathBuf| {
             let network = model.network_with(&weights)?;
             Ok::<_, DdlError>(Self { network, samples })
@@ -90,10 +87,8 @@ impl Published {
         noise: Noise,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let config = self.network.config();
-        let single: Vec<Vec<Vec<Position>>> = goals
-            .iter()
-            .map(|goals| goals.iter().map(|&goal| vec![goal]).collect())
-            .collect();
+        let single: Vec<Vec<Vec<Position>>> =
+            goals.iter().map(|goals| goals.iter().map(|&goal| vec![goal]).collect()).collect();
         let rule = match config.frame {
             NetworkFrame::World => StepRule::Euler,
             NetworkFrame::Goal => StepRule::Bounded,

@@ -63,10 +63,7 @@ pub fn is_evaluated(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest)
         return false;
     };
     let record = run.record();
-    if ![&record, &run.report(), &run.moments()]
-        .iter()
-        .all(|file| file.is_file())
-    {
+    if ![&record, &run.report(), &run.moments()].iter().all(|file| file.is_file()) {
         return false;
     }
     // A record that cannot be read, such as one of another version, does not count.
@@ -85,9 +82,7 @@ pub fn save_evaluation(
     moments: &[ForecastSnapshot],
 ) -> Result<(), DdlError> {
     let Some(run) = model.run() else {
-        return Err(model
-            .source()
-            .wrong("has no run directory for results; write them elsewhere (`Results::save`)"));
+        return Err(model.source().wrong("has no run directory for results; write them elsewhere (`Results::save`)"));
     };
     let _claimed = RunLock::wait(run.path())?;
     let record = run.record();

@@ -32,10 +32,7 @@ impl Results {
     /// When a folder holds no results, one of its files is damaged, or two folders hold different numbers for the same
     /// conditions, or were evaluated on different recordings of the same name.
     pub fn of(title: impl Into<String>, folders: &[impl AsRef<Path>]) -> Result<Self, DdlError> {
-        let mut results = Self {
-            report: Report::new(title, [])?,
-            moments: Vec::new(),
-        };
+        let mut results = Self { report: Report::new(title, [])?, moments: Vec::new() };
         let mut headline: Vec<(u64, Vec<ForecastSnapshot>)> = Vec::new();
         let mut elsewhere = Vec::new();
         let mut recordings = BTreeMap::new();
@@ -57,9 +54,8 @@ impl Results {
             let config = run.config()?;
             for recording in measured_recordings(&run) {
                 let name = (config.data.convention, recording.name);
-                let (sha256, folder) = recordings
-                    .entry(name.clone())
-                    .or_insert_with(|| (recording.sha256.clone(), run.path().to_owned()));
+                let (sha256, folder) =
+                    recordings.entry(name.clone()).or_insert_with(|| (recording.sha256.clone(), run.path().to_owned()));
                 if *sha256 != recording.sha256 {
                     // A mean over both would mean nothing.
                     let problem = format!(
@@ -98,10 +94,7 @@ impl Results {
             write_atomically(&folder.join(name), text.as_bytes())?;
         }
         write_compact_json(&RunDirectory::new(folder).moments(), &self.moments)?;
-        let page = Page {
-            report: &self.report,
-            moments: &self.moments,
-        };
+        let page = Page { report: &self.report, moments: &self.moments };
         let file = figures.join("comparison.svg");
         match page.comparison()? {
             Some(svg) => write_atomically(&file, svg.as_bytes())?,
@@ -116,9 +109,5 @@ impl Results {
 /// The moments of a run; empty when there are none.
 fn read_moments(run: &RunDirectory) -> Result<Vec<ForecastSnapshot>, DdlError> {
     let path = run.moments();
-    if path.is_file() {
-        read_json(&path)
-    } else {
-        Ok(Vec::new())
-    }
+    if path.is_file() { read_json(&path) } else { Ok(Vec::new()) }
 }

@@ -44,12 +44,7 @@ impl NamedForecasts {
 
     /// Straight lines to the goals of that name; `recipe` describes how the goals were made.
     pub(crate) fn lines_to(goal: &str, recipe: String, forecasts: Vec<Forecast>) -> Self {
-        Self {
-            forecaster: format!("straight line to {goal}"),
-            selection: None,
-            goals: recipe,
-            forecasts,
-        }
+        Self { forecaster: format!("straight line to {goal}"), selection: None, goals: recipe, forecasts }
     }
 }
 

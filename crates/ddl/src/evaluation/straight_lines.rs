@@ -10,15 +10,11 @@ pub(crate) fn straight_lines(
     goals: Vec<Vec<WeightedGoals>>,
 ) -> Result<Vec<Forecast>, ForecastError> {
     let lines = windows.iter().zip(goals);
-    lines
-        .map(|(window, goals)| StraightLine(goals).forecast(window))
-        .collect()
+    lines.map(|(window, goals)| StraightLine(goals).forecast(window)).collect()
 }
 
 /// Goal sets in the form that the baselines of the evaluation take.
 pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>, ForecastError> {
     let one = |set: &GoalSet| WeightedGoals::new(set.goals().to_vec(), set.weights().to_vec());
-    sets.iter()
-        .map(|sets| Ok(sets.iter().map(one).collect::<Result<_, _>>()?))
-        .collect()
+    sets.iter().map(|sets| Ok(sets.iter().map(one).collect::<Result<_, _>>()?)).collect()
 }

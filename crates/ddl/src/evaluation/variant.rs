@@ -74,12 +74,7 @@ impl EvaluationVariant {
         let mut variants = Vec::new();
         let mut add = |protocol: Protocol, goals: GivenGoals, motion: VariantMotion, change: Option<String>| {
             if asked.contains(&protocol) {
-                variants.push(Self {
-                    goals,
-                    motion,
-                    change,
-                    protocol,
-                });
+                variants.push(Self { goals, motion, change, protocol });
             }
         };
         let stable = VariantMotion::Shaped(StepRule::Bounded);

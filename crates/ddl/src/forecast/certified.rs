@@ -40,11 +40,7 @@ impl CertifiedForecast {
     /// When `i` or `k` is out of range.
     #[must_use]
     pub fn certificate(&self, i: usize, k: usize) -> &LyapunovCertificate<f64> {
-        assert!(
-            k < self.forecast.hypotheses(),
-            "hypothesis {k} asked of {}",
-            self.forecast.hypotheses()
-        );
+        assert!(k < self.forecast.hypotheses(), "hypothesis {k} asked of {}", self.forecast.hypotheses());
         &self.certificates[i * self.forecast.hypotheses() + k]
     }
 
@@ -73,13 +69,7 @@ pub enum CertificateError {
         "window of `{recording}` starting at frame {start_frame}, pedestrian {pedestrian}, hypothesis \
          {hypothesis}: {cause}; check that the positions are in metres and that training has not diverged"
     )]
-    Walk {
-        recording: String,
-        start_frame: i64,
-        pedestrian: PedestrianName,
-        hypothesis: usize,
-        cause: DynamicsError,
-    },
+    Walk { recording: String, start_frame: i64, pedestrian: PedestrianName, hypothesis: usize, cause: DynamicsError },
 }
 
 /// Goals, weights and steps for the pedestrians of a window.
@@ -145,20 +135,13 @@ impl Walked<'_> {
                     .map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
             })
             .collect();
-        Ok(forecast.with_spread(Spread {
-            scales,
-            paces,
-            regions: Calibration::shared_regions(),
-        })?)
+        Ok(forecast.with_spread(Spread { scales, paces, regions: Calibration::shared_regions() })?)
     }
 
     pub(crate) fn certified(mut self) -> Result<CertifiedForecast, ForecastError> {
         let rolled_out = std::mem::take(&mut self.rolled_out);
         let (positions, certificates) = self.walks(rolled_out, |certificate| certificate)?;
-        let held = certificates
-            .iter()
-            .map(|certificate| certificate.verify().is_ok())
-            .collect();
+        let held = certificates.iter().map(|certificate| certificate.verify().is_ok()).collect();
         let forecast = self.at(positions)?.with_certified(held)?;
         Ok(CertifiedForecast { forecast, certificates })
     }
@@ -180,9 +163,8 @@ impl Walked<'_> {
         }
         assert_eq!(positions.len(), factors.len(), "a position for each factor");
         let certificates = match self.rule {
-            StepRule::Euler => self.each(factors, &mut positions, |approach, factors, path| {
-                approach.certify(path, factors).map(&keep)
-            })?,
+            StepRule::Euler => self
+                .each(factors, &mut positions, |approach, factors, path| approach.certify(path, factors).map(&keep))?,
             StepRule::Bounded => self.each(factors, &mut positions, |approach, factors, path| {
                 let walk = approach.walk(factors)?;
                 path.copy_from_slice(&walk.positions);
@@ -237,11 +219,7 @@ impl Walked<'_> {
 }
 
 pub(crate) fn ensure_flow(variant: Variant) -> Result<(), ForecastError> {
-    if variant.dynamics() {
-        Ok(())
-    } else {
-        Err(no_flow(variant))
-    }
+    if variant.dynamics() { Ok(()) } else { Err(no_flow(variant)) }
 }
 
 fn no_flow(variant: Variant) -> ForecastError {
@@ -264,11 +242,7 @@ mod tests {
         let track = |x: f64, y: f64, step: f64| (0..8).map(|t| [x, y + step * f64::from(t)]).collect();
         let ids = vec![PedestrianId(4), PedestrianId(2)];
         let window = Window::new("yard", 30, 6, ids, vec![track(0.0, 1.0, 0.4), track(9.0, 5.0, -0.3)]).unwrap();
-        let uncertain = ObservationQuality {
-            deviation: 0.3,
-            velocity_deviation: 0.2,
-            ..ObservationQuality::default()
-        };
+        let uncertain = ObservationQuality { deviation: 0.3, velocity_deviation: 0.2, ..ObservationQuality::default() };
         let window = window.with_qualities(vec![ObservationQuality::default(), uncertain]);
         let config = StarConfig::published(Variant::Full);
         let goals = vec![[0.5, 8.0], [-2.0, 7.0], [9.0, -1.0], [7.0, 0.0]];

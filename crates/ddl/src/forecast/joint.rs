@@ -72,14 +72,8 @@ fn planned(plan: &Plan) -> [Position; HORIZON] {
 /// The spread around the paths of the futures: that around the hypotheses, and how far these are from their mixture.
 fn spread(marginal: &Forecast, mixture: &JointMixture) -> Option<Spread> {
     let scales = mixture.scales(marginal)?;
-    let paces = (0..marginal.pedestrians())
-        .map(|i| marginal.pace(i))
-        .collect::<Option<_>>()?;
-    Some(Spread {
-        scales,
-        paces,
-        regions: Calibration::shared_regions(),
-    })
+    let paces = (0..marginal.pedestrians()).map(|i| marginal.pace(i)).collect::<Option<_>>()?;
+    Some(Spread { scales, paces, regions: Calibration::shared_regions() })
 }
 
 #[cfg(test)]
@@ -90,11 +84,7 @@ mod tests {
     /// 1.2 m/s along x and -0.5 m/s along y: after 0.4 s for the first time.
     #[test]
     fn a_plan_is_read_at_the_steps_of_the_forecast() {
-        let point = |time: f64| PlanPoint {
-            time,
-            position: [3.0 + 1.2 * time, 1.0 - 0.5 * time],
-            radius: 0.3,
-        };
+        let point = |time: f64| PlanPoint { time, position: [3.0 + 1.2 * time, 1.0 - 0.5 * time], radius: 0.3 };
         let path = planned(&Plan::new(vec![point(0.0), point(1.1), point(6.0)]).unwrap());
         for (t, [x, y]) in (1..).zip(path) {
             assert!((x - 3.0 - 0.48 * f64::from(t)).abs() < 1e-9 && (y - 1.0 + 0.2 * f64::from(t)).abs() < 1e-9);

@@ -43,35 +43,28 @@ pub(crate) fn walked<'a>(
     rule: StepRule,
 ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
     let GuidedGoals { sets, familiarity } = goals;
-    let goals: Vec<Vec<Vec<Position>>> = sets
-        .iter()
-        .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())
-        .collect();
+    let goals: Vec<Vec<Vec<Position>>> =
+        sets.iter().map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect()).collect();
     let share = |&familiarity: &f64| Calibration::fitted().share(familiarity);
-    let shares: Vec<Vec<f64>> = familiarity
-        .iter()
-        .map(|window| window.iter().map(share).collect())
-        .collect();
+    let shares: Vec<Vec<f64>> = familiarity.iter().map(|window| window.iter().map(share).collect()).collect();
     let rollouts = network
         .forecast_windows(windows, &goals, Noise::Expected, rule, Some(&shares))
         .map_err(|error| ForecastError::model(NAME, error))?;
     let shaped = rollouts.into_iter().zip(windows).zip(sets);
     let trusted = shares.into_iter().zip(familiarity);
-    Ok(shaped
-        .zip(trusted)
-        .map(move |(((rollout, window), sets), (shares, familiarity))| Walked {
-            shares,
-            familiarity: Some(familiarity),
-            spread: None,
-            config: network.config(),
-            rule,
-            window,
-            hypotheses: rollout.hypotheses,
-            rolled_out: rollout.positions,
-            factors: rollout.factors,
-            weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
-            goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
-        }))
+    Ok(shaped.zip(trusted).map(move |(((rollout, window), sets), (shares, familiarity))| Walked {
+        shares,
+        familiarity: Some(familiarity),
+        spread: None,
+        config: network.config(),
+        rule,
+        window,
+        hypotheses: rollout.hypotheses,
+        rolled_out: rollout.positions,
+        factors: rollout.factors,
+        weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
+        goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
+    }))
 }
 
 /// Plain STAR: equally likely noise samples.
@@ -80,10 +73,7 @@ pub(crate) fn without_goals(
     seed: u64,
     windows: &[Window],
 ) -> Result<Vec<Forecast>, ForecastError> {
-    let noise = Noise::Draws {
-        count: NOISE_HYPOTHESES,
-        seed,
-    };
+    let noise = Noise::Draws { count: NOISE_HYPOTHESES, seed };
     // This variant does not read the goals.
     let unused = |window: &Window| vec![vec![[0.0; 2]]; window.len()];
     let goals: Vec<_> = windows.iter().map(unused).collect();
@@ -96,9 +86,5 @@ pub(crate) fn without_goals(
 }
 
 pub(crate) fn with_equal_weights(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
-    Ok(Forecast::with_equal_weights(
-        rollout.pedestrians,
-        rollout.hypotheses,
-        rollout.positions,
-    )?)
+    Ok(Forecast::with_equal_weights(rollout.pedestrians, rollout.hypotheses, rollout.positions)?)
 }

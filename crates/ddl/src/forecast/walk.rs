@@ -58,10 +58,8 @@ impl Approach {
         factors: &[[f64; 3]],
     ) -> Result<LyapunovCertificate<f64>, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
-        let path: Vec<Vector2<f64>> = std::iter::once(&self.start)
-            .chain(positions)
-            .map(|&position| position.into())
-            .collect();
+        let path: Vec<Vector2<f64>> =
+            std::iter::once(&self.start).chain(positions).map(|&position| position.into()).collect();
         let metrics = self.metrics(factors)?;
         LyapunovCertificate::new(&path, &metrics, &attractor, self.time_step)
     }
@@ -71,10 +69,7 @@ impl Approach {
         let mut metrics = Vec::with_capacity(factors.len());
         for (step, &[a, b, c]) in factors.iter().enumerate() {
             let metric = CholeskyMetric::planar(a, b, c, self.sigma);
-            metrics.push(metric.map_err(|cause| DynamicsError::Step {
-                step,
-                cause: Box::new(cause),
-            })?);
+            metrics.push(metric.map_err(|cause| DynamicsError::Step { step, cause: Box::new(cause) })?);
         }
         Ok(metrics)
     }
@@ -118,10 +113,9 @@ mod tests {
     fn an_invalid_factor_is_named_with_its_step() {
         let mut factors = [[1.0, 0.0, 1.0]; HORIZON];
         factors[7][1] = f64::NAN;
-        for error in [
-            approach().walk(&factors).unwrap_err(),
-            approach().certify(&[[0.0, 0.0]; HORIZON], &factors).unwrap_err(),
-        ] {
+        for error in
+            [approach().walk(&factors).unwrap_err(), approach().certify(&[[0.0, 0.0]; HORIZON], &factors).unwrap_err()]
+        {
             assert!(matches!(error, DynamicsError::Step { step: 7, .. }), "{error}");
             assert!(error.to_string().contains("(1, 0)"), "{error}");
         }

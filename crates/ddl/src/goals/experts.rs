@@ -12,10 +12,8 @@ const TRACK_BYTES: u64 = WINDOW as u64 * 2 * 8;
 const REMEDY: &str = "copy it again, or delete it and run the same training again";
 
 pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
-    let tracks: Vec<Vec<Position>> = windows
-        .iter()
-        .flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec()))
-        .collect();
+    let tracks: Vec<Vec<Position>> =
+        windows.iter().flat_map(|window| (0..window.len()).map(|i| window.track(i).to_vec())).collect();
     Ok(ExpertLibrary::new(tracks, TIME_STEP)?)
 }
 

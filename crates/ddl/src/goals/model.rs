@@ -98,38 +98,19 @@ impl GoalModel {
         let motions = TrainingMotions::learn(tracks, config.star.time_step);
         let fingerprints = fingerprints_of(&run)?;
         let origin = match (&config.goals.proposal, network) {
-            (Some(recipe), Some(network)) => GoalOrigin::Pooled {
-                network,
-                estimator,
-                retrieved_share: recipe.retrieved_share,
-            },
+            (Some(recipe), Some(network)) => {
+                GoalOrigin::Pooled { network, estimator, retrieved_share: recipe.retrieved_share }
+            }
             _ => GoalOrigin::Retrieved(estimator),
         };
-        Ok(Self {
-            source: ModelSource::Run(run),
-            config,
-            origin,
-            motions,
-            fingerprints,
-        })
+        Ok(Self { source: ModelSource::Run(run), config, origin, motions, fingerprints })
     }
 
     /// The goals of a packed model, and its remaining contents.
     pub(crate) fn of_packed(source: &ModelSource, unpacked: Unpacked) -> (Self, Box<dyn ForecastWindows>) {
-        let Unpacked {
-            config,
-            network,
-            proposal,
-            motions,
-            fingerprints,
-        } = unpacked;
-        let goals = Self {
-            source: source.clone(),
-            config,
-            origin: GoalOrigin::Proposed(proposal),
-            motions,
-            fingerprints,
-        };
+        let Unpacked { config, network, proposal, motions, fingerprints } = unpacked;
+        let goals =
+            Self { source: source.clone(), config, origin: GoalOrigin::Proposed(proposal), motions, fingerprints };
         (goals, network)
     }
 
@@ -184,10 +165,7 @@ impl GoalModel {
 
     /// Number of learned parameters of the proposal network; 0 without one.
     pub fn parameter_count(&self) -> usize {
-        self.recipe()
-            .proposal
-            .as_ref()
-            .map_or(0, |recipe| recipe.network.parameter_count())
+        self.recipe().proposal.as_ref().map_or(0, |recipe| recipe.network.parameter_count())
     }
 
     /// Adds to each window the memory of its place: tracks of earlier pedestrians in the recordings of the dataset.
@@ -203,9 +181,8 @@ impl GoalModel {
         let count = self.recalled_per_pedestrian()?;
         let fold = self.fold_with_places(dataset)?;
         let of_place = |recording: &str| -> Vec<&Recording> {
-            let trained_fold = fold
-                .as_ref()
-                .filter(|fold| what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty());
+            let trained_fold =
+                fold.as_ref().filter(|fold| what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty());
             trained_fold.map_or_else(Vec::new, |fold| fold.training_recordings_of_place(recording))
         };
         let playback = match what {
@@ -262,11 +239,9 @@ impl GoalModel {
         let sets = match &self.origin {
             GoalOrigin::Retrieved(estimator) => sets::retrieved(estimator, windows)?,
             GoalOrigin::Proposed(network) => self.representatives(&**network, None, windows)?,
-            GoalOrigin::Pooled {
-                network,
-                estimator,
-                retrieved_share,
-            } => self.representatives(&**network, Some((estimator, *retrieved_share)), windows)?,
+            GoalOrigin::Pooled { network, estimator, retrieved_share } => {
+                self.representatives(&**network, Some((estimator, *retrieved_share)), windows)?
+            }
         };
         Ok(self.within_reach(windows, sets))
     }
@@ -344,11 +319,7 @@ impl GoalModel {
             views.push(seen.view);
         }
         let mut proposed = network.propose(&views).map_err(failed)?;
-        let unforeseen = self
-            .recipe()
-            .proposal
-            .as_ref()
-            .map_or(0.0, |recipe| recipe.unforeseen_share);
+        let unforeseen = self.recipe().proposal.as_ref().map_or(0.0, |recipe| recipe.unforeseen_share);
         for ((proposed, (_, unit)), view) in proposed.iter_mut().zip(&frames).zip(&views) {
             let in_metres = |position: Position| position.map(|coordinate| coordinate * unit);
             for end in &mut proposed.endpoints {
@@ -368,9 +339,7 @@ impl GoalModel {
                 }
                 let ends = set.goals().iter().map(|&goal| frame.to_frame(goal));
                 proposed.endpoints.extend(ends);
-                proposed
-                    .weights
-                    .extend(set.weights().iter().map(|weight| weight * share));
+                proposed.weights.extend(set.weights().iter().map(|weight| weight * share));
             }
         }
         let clusters = self.clusters();
@@ -382,10 +351,7 @@ impl GoalModel {
             .collect::<Result<_, _>>()
             .map_err(failed)?;
         let mut sets = sets.into_iter();
-        Ok(windows
-            .iter()
-            .map(|window| sets.by_ref().take(window.len()).collect())
-            .collect())
+        Ok(windows.iter().map(|window| sets.by_ref().take(window.len()).collect()).collect())
     }
 
     /// The goals of pedestrians in training: the proposed goal nearest the true endpoint, or the true endpoint without
@@ -422,11 +388,8 @@ impl GoalModel {
             ));
         };
         let library: ExpertLibrary = estimator.library().clone();
-        let params = GoalEstimatorParams {
-            seed: self.recipe().retrieval.seed,
-            query,
-            ..GoalEstimatorParams::published()
-        };
+        let params =
+            GoalEstimatorParams { seed: self.recipe().retrieval.seed, query, ..GoalEstimatorParams::published() };
         Ok(GoalEstimator::new(params, library)?)
     }
 }

@@ -94,16 +94,9 @@ pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, D
              run, or pack the run with `ddl pack`",
         ));
     };
-    let Header {
-        layout,
-        config,
-        motions,
-        sha256,
-    } = serde_json::from_str(entry).map_err(|error| damaged(&error))?;
+    let Header { layout, config, motions, sha256 } = serde_json::from_str(entry).map_err(|error| damaged(&error))?;
     if layout != LAYOUT {
-        return Err(source.wrong(format!(
-            "has layout {layout}, this program reads {LAYOUT}; pack its run again"
-        )));
+        return Err(source.wrong(format!("has layout {layout}, this program reads {LAYOUT}; pack its run again")));
     }
     let mut tensors = tensors_of(&file).map_err(|problem| damaged(&problem))?;
     // Check the digest before using the configuration.
@@ -112,15 +105,11 @@ pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, D
         return Err(damaged(&"its SHA-256 does not match its configuration and weights"));
     }
     let other = |error: &dyn std::fmt::Display| {
-        source.wrong(format!(
-            "was packed by another version of this program ({error}); pack its run again"
-        ))
+        source.wrong(format!("was packed by another version of this program ({error}); pack its run again"))
     };
     let ConfigFormat { format } = serde_json::from_str(&config).map_err(|error| other(&error))?;
     if format != FORMAT {
-        return Err(other(&format!(
-            "it is of a run of layout {format}, this program reads {FORMAT}"
-        )));
+        return Err(other(&format!("it is of a run of layout {format}, this program reads {FORMAT}")));
     }
     let config = serde_json::from_str(&config).map_err(|error| other(&error))?;
     let motions = motions.map(|motions| serde_json::from_str(&motions)).transpose();
@@ -133,12 +122,7 @@ pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, D
     let Some(fingerprints) = fingerprints else {
         return Err(source.wrong("has no fingerprints of its training tracks; pack its run again"));
     };
-    Ok(Contents {
-        config,
-        motions,
-        fingerprints,
-        tensors,
-    })
+    Ok(Contents { config, motions, fingerprints, tensors })
 }
 
 /// The type of the numbers of a tensor of this name.
@@ -152,11 +136,7 @@ fn tensors_of(file: &SafeTensors<'_>) -> Result<Vec<HalfTensor>, String> {
         if view.dtype() != expected {
             return Err(format!("{name} holds {:?}, expected {expected:?}", view.dtype()));
         }
-        Ok(HalfTensor {
-            name: name.to_owned(),
-            shape: view.shape().to_vec(),
-            bytes: view.data().to_vec(),
-        })
+        Ok(HalfTensor { name: name.to_owned(), shape: view.shape().to_vec(), bytes: view.data().to_vec() })
     };
     file.iter().map(half).collect()
 }
@@ -166,12 +146,7 @@ pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, Dd
 }
 
 pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Result<Unpacked, DdlError> {
-    let Contents {
-        config,
-        motions,
-        fingerprints,
-        tensors,
-    } = contents(bytes, source)?;
+    let Contents { config, motions, fingerprints, tensors } = contents(bytes, source)?;
     source.check(&config)?;
     let Some(recipe) = &config.goals.proposal else {
         return Err(source.wrong("has no proposal network for its goals; pack another run"));
@@ -192,16 +167,15 @@ pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Resu
         list.push(HalfTensor { name, ..tensor });
     }
     let unfit = |error: DdlError| match error {
-        DdlError::Network(error @ NetworkError::Weights { .. }) => source.wrong(format!(
-            "does not fit the networks it describes ({error}); pack its run again"
-        )),
+        DdlError::Network(error @ NetworkError::Weights { .. }) => {
+            source.wrong(format!("does not fit the networks it describes ({error}); pack its run again"))
+        }
         other => other,
     };
     // Allocate only networks whose sizes match the weights in the file.
-    for (tensors, least) in [
-        (&of_network, config.star.min_weight_count()),
-        (&of_proposal, recipe.network.min_weight_count()),
-    ] {
+    for (tensors, least) in
+        [(&of_network, config.star.min_weight_count()), (&of_proposal, recipe.network.min_weight_count())]
+    {
         let bytes: usize = tensors.iter().map(|tensor| tensor.bytes.len()).sum();
         let numbers = bytes as u64 / 2;
         if numbers < least {
@@ -211,19 +185,10 @@ pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Resu
             )));
         }
     }
-    let network = device
-        .forecasting(&config.star, |layout| Weights::from_half(layout, &of_network))
-        .map_err(unfit)?;
-    let proposal = device
-        .proposing(&recipe.network, |layout| Weights::from_half(layout, &of_proposal))
-        .map_err(unfit)?;
-    Ok(Unpacked {
-        config,
-        network,
-        proposal,
-        motions,
-        fingerprints,
-    })
+    let network = device.forecasting(&config.star, |layout| Weights::from_half(layout, &of_network)).map_err(unfit)?;
+    let proposal =
+        device.proposing(&recipe.network, |layout| Weights::from_half(layout, &of_proposal)).map_err(unfit)?;
+    Ok(Unpacked { config, network, proposal, motions, fingerprints })
 }
 
 /// SHA-256 of the strings of the header and of the name, shape and bytes of every tensor, in the order of the names.
@@ -241,11 +206,7 @@ pub(crate) fn digest(texts: [&str; 2], tensors: &[HalfTensor]) -> String {
     }
     for tensor in by_name {
         part(tensor.name.as_bytes());
-        let shape: Vec<u8> = tensor
-            .shape
-            .iter()
-            .flat_map(|&size| (size as u64).to_le_bytes())
-            .collect();
+        let shape: Vec<u8> = tensor.shape.iter().flat_map(|&size| (size as u64).to_le_bytes()).collect();
         part(&shape);
         part(&tensor.bytes);
     }

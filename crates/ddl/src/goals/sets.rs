@@ -17,14 +17,9 @@ pub(crate) fn retrieved(estimator: &GoalEstimator, windows: &[Window]) -> Result
         }
         tracks.extend((0..window.len()).map(|i| &window.track(i)[..needed]));
     }
-    let sets = estimator
-        .estimate_batch(&tracks)
-        .map_err(|error| ForecastError::model("goal estimator", error))?;
+    let sets = estimator.estimate_batch(&tracks).map_err(|error| ForecastError::model("goal estimator", error))?;
     let mut sets = sets.into_iter();
-    Ok(windows
-        .iter()
-        .map(|window| sets.by_ref().take(window.len()).collect())
-        .collect())
+    Ok(windows.iter().map(|window| sets.by_ref().take(window.len()).collect()).collect())
 }
 
 /// The central goal of each pedestrian. Padded positions before the first observation extrapolate in a straight line,
@@ -32,9 +27,7 @@ pub(crate) fn retrieved(estimator: &GoalEstimator, windows: &[Window]) -> Result
 pub(crate) fn with_central_only(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
         let pedestrians = sets.par_iter().enumerate();
-        pedestrians
-            .map(|(i, set)| set.with_central_only(&window.observed(i)[window.quality(i).unseen..]))
-            .collect()
+        pedestrians.map(|(i, set)| set.with_central_only(&window.observed(i)[window.quality(i).unseen..])).collect()
     };
     windows.iter().zip(sets).map(of_window).collect()
 }
@@ -51,11 +44,7 @@ pub(crate) fn nearest_true_end(
         };
         sets.iter().enumerate().map(nearest).collect()
     };
-    windows
-        .iter()
-        .zip(retrieved(estimator, windows)?)
-        .map(of_window)
-        .collect()
+    windows.iter().zip(retrieved(estimator, windows)?).map(of_window).collect()
 }
 
 fn future_missing(window: &Window) -> ForecastError {

@@ -31,27 +31,13 @@ mod tests {
     #[test]
     fn endpoints_of_a_pedestrian_by_hand() {
         let observed = std::array::from_fn(|t| [0.3 * (t as f64 - 7.0), 0.4 * (t.max(4) as f64 - 7.0)]);
-        let mut proposed = ProposedEndpoints {
-            endpoints: vec![[4.8, 0.0]],
-            weights: vec![0.5],
-        };
+        let mut proposed = ProposedEndpoints { endpoints: vec![[4.8, 0.0]], weights: vec![0.5] };
         add(&mut proposed, 0.01, &observed, 0.5);
         let weights = proposed.weights.clone();
         add(&mut proposed, 0.01, &[[2.0, 1.0]; OBSERVED], 0.5);
-        let expected = [
-            [4.8, 0.0],
-            [0.0, 0.0],
-            [0.0, 3.6],
-            [0.0, -3.6],
-            [-3.0, 0.0],
-            [0.0, 0.0],
-            [0.0, 1.08],
-        ];
+        let expected = [[4.8, 0.0], [0.0, 0.0], [0.0, 3.6], [0.0, -3.6], [-3.0, 0.0], [0.0, 0.0], [0.0, 1.08]];
         for (found, expected) in proposed.endpoints.iter().zip(expected) {
-            assert!(
-                (found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-12,
-                "{found:?}"
-            );
+            assert!((found[0] - expected[0]).hypot(found[1] - expected[1]) < 1e-12, "{found:?}");
         }
         assert_eq!(weights, [0.5, 0.005, 0.005, 0.005, 0.005]);
     }

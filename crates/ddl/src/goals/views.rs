@@ -35,10 +35,7 @@ pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> R
             remembered: window
                 .remembered(i)
                 .iter()
-                .map(|other| RememberedTrack {
-                    track: in_frame(&frame, unit, &other.track),
-                    ..*other
-                })
+                .map(|other| RememberedTrack { track: in_frame(&frame, unit, &other.track), ..*other })
                 .collect(),
         };
         Ok(FramedView { frame, unit, view })

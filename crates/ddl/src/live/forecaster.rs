@@ -74,21 +74,14 @@ impl<M> LiveForecaster<M> {
     /// less than 8 steps. [`Window::quality`] says how well each pedestrian was observed.
     #[must_use]
     pub fn with_tracks(model: M, tracks: LiveTracks) -> Self {
-        Self {
-            model,
-            watch: Watch::new(tracks),
-            regions: None,
-        }
+        Self { model, watch: Watch::new(tracks), regions: None }
     }
 
     /// Adapts regions and weights to the observations of this place; see [`AdaptiveRegions`]. All other parts of the
     /// forecasts have the same bits.
     #[must_use]
     pub fn with_adaptive_regions(self, regions: AdaptiveRegions) -> Self {
-        Self {
-            regions: Some(regions),
-            ..self
-        }
+        Self { regions: Some(regions), ..self }
     }
 
     /// The adaptive regions; `None` unless requested.

@@ -39,12 +39,7 @@ impl MemoryFile {
         let lock = RunLock::take_file(&file)?;
         let read = file.exists().then(|| SceneMemory::read(path));
         let memory = read.transpose()?;
-        let file = Self {
-            path: path.to_owned(),
-            file,
-            written: Instant::now(),
-            _lock: lock,
-        };
+        let file = Self { path: path.to_owned(), file, written: Instant::now(), _lock: lock };
         Ok((file, memory))
     }
 
@@ -113,10 +108,8 @@ fn resolved(path: &Path) -> PathBuf {
     if let Ok(path) = path.canonicalize() {
         return path;
     }
-    let path = std::fs::read_link(path).map_or_else(
-        |_| path.to_owned(),
-        |target| path.parent().unwrap_or(Path::new("")).join(target),
-    );
+    let path = std::fs::read_link(path)
+        .map_or_else(|_| path.to_owned(), |target| path.parent().unwrap_or(Path::new("")).join(target));
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new(".")).canonicalize();
     match (folder, path.file_name()) {

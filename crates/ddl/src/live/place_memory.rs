@@ -52,17 +52,8 @@ impl PlaceMemory {
         let count = model.goal_model().recalled_per_pedestrian()?;
         memory.end_tracks();
         let is_tested = memory.segments() >= MIN_SEGMENTS;
-        let trial = is_tested.then(|| Trial {
-            given: memory.clone(),
-            tried: BTreeSet::new(),
-            alike: 0,
-        });
-        Ok(Self {
-            memory,
-            count,
-            trial,
-            refused: None,
-        })
+        let trial = is_tested.then(|| Trial { given: memory.clone(), tried: BTreeSet::new(), alike: 0 });
+        Ok(Self { memory, count, trial, refused: None })
     }
 
     /// The memory: the given one, with the frames observed since.
@@ -192,10 +183,7 @@ pub(crate) mod tests {
                 Window::new("live", 99 * id, 3, ids, vec![track]).unwrap()
             };
             let window = window_on(lane);
-            let unseen = ObservationQuality {
-                unseen: 1,
-                ..ObservationQuality::default()
-            };
+            let unseen = ObservationQuality { unseen: 1, ..ObservationQuality::default() };
             // Counted once, and not before it was seen for 8 steps: until then it seems to be elsewhere.
             let partial = window_on(if lane.abs() < 2.0 { 9.0 } else { 0.0 }).with_qualities(vec![unseen]);
             for (later, window) in [(0, None), (1, Some(&partial)), (2, Some(&window)), (3, Some(&window))] {
@@ -234,15 +222,8 @@ pub(crate) mod tests {
             assert_eq!(place.refused().is_some(), refused.is_some(), "{lanes:?} {reason}");
             assert!(reason.contains(&refused.clone().unwrap_or_default()), "{reason}");
             // Who was seen is remembered, unless the memory is of another place: then it begins anew.
-            let (seen, summary) = (
-                lanes.iter().map(|lane| lane.0).sum::<i64>() as u64,
-                place.memory().summary(),
-            );
-            let expected = if refused.is_some() {
-                (0, u64::from(!finished))
-            } else {
-                (550, 55 + seen)
-            };
+            let (seen, summary) = (lanes.iter().map(|lane| lane.0).sum::<i64>() as u64, place.memory().summary());
+            let expected = if refused.is_some() { (0, u64::from(!finished)) } else { (550, 55 + seen) };
             assert_eq!((summary.segments, summary.pedestrians), expected, "{lanes:?}");
             assert_eq!(place.memory().empty_copy(), given.empty_copy());
         }

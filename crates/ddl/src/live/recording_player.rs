@@ -88,12 +88,7 @@ impl RecordingPlayer<'_> {
         )];
         notes.extend(certificates(forecasts));
         notes.extend(self.unfamiliar(forecasts, clock).map(|warning| warning + "."));
-        let viewer = Viewer {
-            title: recording.name(),
-            lead: &lead,
-            notes: &notes,
-            moments: &moments,
-        };
+        let viewer = Viewer { title: recording.name(), lead: &lead, notes: &notes, moments: &moments };
         Ok(viewer.to_html()?)
     }
 }

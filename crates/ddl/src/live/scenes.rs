@@ -102,10 +102,7 @@ impl LiveScenes {
     /// Keeps only the latest window of each scene in the queue.
     #[must_use]
     pub fn latest_only(self) -> Self {
-        Self {
-            is_latest_only: true,
-            ..self
-        }
+        Self { is_latest_only: true, ..self }
     }
 
     /// Adds a frame of a scene, with the positions (m) of all pedestrians in any order. `None` is the scene of a stream
@@ -152,16 +149,11 @@ impl LiveScenes {
         names: &PedestrianNames,
     ) -> Result<(), DdlError> {
         if self.waiting.len() >= Self::MOST_WAITING {
-            return Err(DdlError::TooManyWaiting {
-                limit: Self::MOST_WAITING,
-            });
+            return Err(DdlError::TooManyWaiting { limit: Self::MOST_WAITING });
         }
         let kept: usize = self.scenes.values().map(|scene| scene.watch.tracks.len()).sum();
         if kept + pedestrians.len() > Self::MOST_PEDESTRIANS {
-            return Err(LiveError::TooManyPedestrians {
-                limit: Self::MOST_PEDESTRIANS,
-            }
-            .into());
+            return Err(LiveError::TooManyPedestrians { limit: Self::MOST_PEDESTRIANS }.into());
         }
         let is_new = !self.scenes.contains_key(&name);
         let scene = self.scene(&name)?;
@@ -211,11 +203,7 @@ impl LiveScenes {
                 });
             }
         }
-        let unseen = || WatchedScene {
-            watch: Watch::new(self.unseen.clone()),
-            heard: Instant::now(),
-            dropped: 0,
-        };
+        let unseen = || WatchedScene { watch: Watch::new(self.unseen.clone()), heard: Instant::now(), dropped: 0 };
         Ok(self.scenes.entry(name.clone()).or_insert_with(unseen))
     }
 
@@ -276,9 +264,7 @@ impl LiveScenes {
     pub fn most_dropped(&self) -> Option<(&SceneName, u64)> {
         let scenes = self.scenes.iter();
         let named = scenes.filter_map(|(name, scene)| Some((name.as_ref()?, scene.dropped)));
-        named
-            .filter(|(_, dropped)| *dropped > 0)
-            .max_by_key(|(_, dropped)| *dropped)
+        named.filter(|(_, dropped)| *dropped > 0).max_by_key(|(_, dropped)| *dropped)
     }
 
     /// Removes the oldest windows from the queue: as many as have together at most `pedestrians` pedestrians, and at
@@ -312,10 +298,7 @@ mod tests {
             scenes.observe(Some(&name(&scene.to_string())), 0, []).unwrap();
         }
         let error = scenes.observe(Some(&name("more")), 0, []).unwrap_err().to_string();
-        assert!(
-            error.contains("more than 2000") && error.contains("10 minutes"),
-            "{error}"
-        );
+        assert!(error.contains("more than 2000") && error.contains("10 minutes"), "{error}");
         // Scenes without a frame are forgotten at once.
         scenes.idle_timeout = Duration::ZERO;
         scenes.observe(Some(&name("more")), 0, []).unwrap();
@@ -333,9 +316,7 @@ mod tests {
         let mut scenes = LiveScenes::new(LiveTracks::new());
         let crowd = |scene: i64| (0..100_000).map(move |id| (PedestrianId(id), [scene as f64, 0.0]));
         for scene in 0..4 {
-            scenes
-                .observe(Some(&name(&scene.to_string())), 0, crowd(scene))
-                .unwrap();
+            scenes.observe(Some(&name(&scene.to_string())), 0, crowd(scene)).unwrap();
         }
         let error = scenes.observe(Some(&name("4")), 0, crowd(4)).unwrap_err().to_string();
         assert!(error.contains("more than 400000 pedestrians"), "{error}");

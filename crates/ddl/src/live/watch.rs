@@ -97,19 +97,13 @@ mod tests {
         let clock = Clock::with_frame_time(1.0 / 7.0).unwrap();
         let mut watch = Watch::new(LiveTracks::with_clock(clock));
         let other = watch.remember(&model, Some(SceneMemory::new(3, 9).unwrap()));
-        assert!(matches!(
-            other,
-            Err(DdlError::MemoryFrameStep { camera: 14, memory: 3 })
-        ));
+        assert!(matches!(other, Err(DdlError::MemoryFrameStep { camera: 14, memory: 3 })));
         watch.remember(&model, None).unwrap();
         // The first pedestrian has an impossible row; the second walks on 2 m aside, as if it were another one.
         let rows = |frame: i64| {
             let along = 0.17 * frame as f64;
             let [wrong, aside] = [frame == 20, frame >= 62].map(|holds| if holds { 2.0 } else { 0.0 });
-            vec![
-                (PedestrianId(1), [along, 30.0 * wrong]),
-                (PedestrianId(2), [along, 2.0 + aside]),
-            ]
+            vec![(PedestrianId(1), [along, 30.0 * wrong]), (PedestrianId(2), [along, 2.0 + aside])]
         };
         let memory_of = |watch: &Watch| watch.place.as_ref().unwrap().memory().clone();
         let push = |watch: &mut Watch, frame| watch.push(frame, rows(frame), |_| Ok::<_, DdlError>(())).unwrap();
@@ -124,10 +118,7 @@ mod tests {
         let tracks: Vec<Vec<Position>> = memory_of(&watch).tracks().collect();
         assert!(tracks[0].iter().all(|[_, y]| y.abs() < 1e-9), "{tracks:?}");
         let on = |lane: f64| tracks[1].iter().filter(|[_, y]| (y - lane).abs() < 1e-9).count();
-        assert!(
-            on(2.0) > 8 && on(4.0) > 8 && on(2.0) + on(4.0) == tracks[1].len(),
-            "{tracks:?}"
-        );
+        assert!(on(2.0) > 8 && on(4.0) > 8 && on(2.0) + on(4.0) == tracks[1].len(), "{tracks:?}");
         // An error changes nothing. What a window recalls was observed before its last frame.
         let before = (watch.tracks.clone(), memory_of(&watch));
         let failed: Result<Option<(Window, ())>, _> = watch.push(125, rows(125), |_| Err(DdlError::Interrupted));

@@ -100,9 +100,7 @@ impl Ddl {
         certified::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
         let goals = self.guided(windows, goals);
-        shaped::walked(&*self.network, windows, goals, StepRule::Bounded)?
-            .map(Walked::certified)
-            .collect()
+        shaped::walked(&*self.network, windows, goals, StepRule::Bounded)?.map(Walked::certified).collect()
     }
 
     /// The joint futures of each window: hypothesis k of all pedestrians is future k, with one weight for the scene, so
@@ -221,10 +219,7 @@ impl Ddl {
 
     fn guided(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> GuidedGoals {
         let familiarity = windows.iter().map(|window| self.goals.familiarity(window));
-        GuidedGoals {
-            sets,
-            familiarity: familiarity.collect(),
-        }
+        GuidedGoals { sets, familiarity: familiarity.collect() }
     }
 }
 

@@ -65,12 +65,7 @@ impl Ddl {
     }
 
     fn with(goals: GoalModel, device: Device, network: Box<dyn ForecastWindows>) -> Result<Self, DdlError> {
-        Ok(Self {
-            goals,
-            device,
-            parameters: network.copy_weights()?.numbers().len(),
-            network,
-        })
+        Ok(Self { goals, device, parameters: network.copy_weights()?.numbers().len(), network })
     }
 
     fn of_run(run: RunDirectory, device: Device) -> Result<Self, DdlError> {
@@ -109,9 +104,7 @@ impl Ddl {
 
 fn load_network(config: &RunConfig, device: Device, weights: &Path) -> Result<Box<dyn ForecastWindows>, DdlError> {
     enough_weights::require(weights, config.star.min_weight_count())?;
-    device.forecasting(&config.star, |layout| {
-        load_weights(layout, &config.network_origin(), weights)
-    })
+    device.forecasting(&config.star, |layout| load_weights(layout, &config.network_origin(), weights))
 }
 
 impl ModelSource {

@@ -24,11 +24,7 @@ pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<V
         }
     }
     let bytes = goals.fingerprints().to_bytes();
-    tensors.push(HalfTensor {
-        name: FINGERPRINTS.to_owned(),
-        shape: vec![bytes.len()],
-        bytes,
-    });
+    tensors.push(HalfTensor { name: FINGERPRINTS.to_owned(), shape: vec![bytes.len()], bytes });
     let failed = |error: &dyn std::fmt::Display| source.wrong(format!("cannot be packed: {error}"));
     let config = serde_json::to_string(goals.config()).map_err(|error| failed(&error))?;
     let motions = goals.motions().map(serde_json::to_string).transpose();

@@ -74,16 +74,7 @@ impl RunConfig {
     /// and units, which show in the windows.
     #[must_use]
     pub(crate) fn origin(&self) -> Origin {
-        self.origin_of(&[
-            "format",
-            "star",
-            "training",
-            "goals",
-            "data",
-            "keep_every",
-            "patience",
-            "from",
-        ])
+        self.origin_of(&["format", "star", "training", "goals", "data", "keep_every", "patience", "from"])
     }
 
     /// Some parts of `config.json`, each leaf with its path, such as `training.seed`.

@@ -205,10 +205,7 @@ impl RunDirectory {
                     BuiltinModel::ALL.map(BuiltinModel::name).join(", ")
                 )
             } else if inside.join("config.json").is_file() {
-                format!(
-                    "has no config.json, but {} has one: give that directory",
-                    inside.display()
-                )
+                format!("has no config.json, but {} has one: give that directory", inside.display())
             } else {
                 "has no config.json, so it is not the directory of a run (`ddl train --out` makes one)".to_owned()
             };
@@ -278,12 +275,8 @@ fn read_text(path: &Path) -> Result<String, DdlError> {
 
 pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, DdlError> {
     let text = read_text(path)?;
-    serde_json::from_str(&text).map_err(|error| {
-        DdlError::run(
-            path,
-            format!("is damaged ({error}); delete it and run the command again"),
-        )
-    })
+    serde_json::from_str(&text)
+        .map_err(|error| DdlError::run(path, format!("is damaged ({error}); delete it and run the command again")))
 }
 
 /// Writes a JSON file under a temporary name and renames it.

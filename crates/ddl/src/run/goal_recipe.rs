@@ -67,22 +67,13 @@ impl GoalRecipe {
     pub fn proposed(seed: u64) -> Self {
         let mut proposal = ProposalRecipe::default();
         proposal.training.seed = seed;
-        Self {
-            proposal: Some(proposal),
-            ..Self::retrieved(seed)
-        }
+        Self { proposal: Some(proposal), ..Self::retrieved(seed) }
     }
 
     /// Goals retrieved from the expert library.
     #[must_use]
     pub fn retrieved(seed: u64) -> Self {
-        Self {
-            retrieval: GoalEstimatorParams {
-                seed,
-                ..Default::default()
-            },
-            proposal: None,
-        }
+        Self { retrieval: GoalEstimatorParams { seed, ..Default::default() }, proposal: None }
     }
 
     /// Checks every parameter.
@@ -97,10 +88,9 @@ impl GoalRecipe {
         if let Some(proposal) = &self.proposal {
             proposal.network.check()?;
             proposal.training.check()?;
-            for (field, share) in [
-                ("retrieved_share", proposal.retrieved_share),
-                ("unforeseen_share", proposal.unforeseen_share),
-            ] {
+            for (field, share) in
+                [("retrieved_share", proposal.retrieved_share), ("unforeseen_share", proposal.unforeseen_share)]
+            {
                 if !(0.0..=1.0).contains(&share) {
                     return Err(DdlError::GoalShare { field, share });
                 }
@@ -122,11 +112,7 @@ impl GoalRecipe {
     pub(crate) fn words(&self) -> String {
         match &self.proposal {
             None => "retrieved".to_owned(),
-            Some(proposal) => format!(
-                "{}, and retrieved (share {})",
-                proposal.words(),
-                proposal.retrieved_share
-            ),
+            Some(proposal) => format!("{}, and retrieved (share {})", proposal.words(), proposal.retrieved_share),
         }
     }
 }

@@ -58,14 +58,7 @@ fn open(path: &Path) -> Result<Option<File>, DdlError> {
     match file {
         Ok(file) => Ok(Some(file)),
         // A finished run in a read-only directory is still usable.
-        Err(error)
-            if matches!(
-                error.kind(),
-                ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem
-            ) =>
-        {
-            Ok(None)
-        }
+        Err(error) if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem) => Ok(None),
         Err(error) => Err(DdlError::io(path, error)),
     }
 }
@@ -82,10 +75,7 @@ mod tests {
         let first = RunLock::take(folder.path()).unwrap();
         let message = RunLock::take(folder.path()).unwrap_err().to_string();
         let name = folder.path().display().to_string();
-        assert!(
-            message.contains(&name) && message.contains("choose another"),
-            "{message}"
-        );
+        assert!(message.contains(&name) && message.contains("choose another"), "{message}");
         drop(first);
         let waited = RunLock::wait(folder.path()).unwrap();
         assert!(RunLock::take(folder.path()).is_err());

@@ -23,11 +23,7 @@ impl ModelSource {
     /// The source at `path`: a packed model if it is a file, else the directory of a run.
     #[must_use]
     pub fn at(path: &Path) -> Self {
-        if path.is_file() {
-            Self::Packed(path.to_owned())
-        } else {
-            Self::Run(RunDirectory::new(path))
-        }
+        if path.is_file() { Self::Packed(path.to_owned()) } else { Self::Run(RunDirectory::new(path)) }
     }
 
     /// The source of this name: a file or the directory of a run of this path or, if there is none, the built-in model
@@ -45,9 +41,7 @@ impl ModelSource {
     pub(crate) fn check(&self, config: &RunConfig) -> Result<(), DdlError> {
         let star = config.star.check().map_err(DdlError::from);
         star.and_then(|()| config.goals.check()).map_err(|error| {
-            self.wrong(format!(
-                "has an invalid configuration ({error}); restore the file as it was written"
-            ))
+            self.wrong(format!("has an invalid configuration ({error}); restore the file as it was written"))
         })
     }
 
@@ -63,10 +57,7 @@ impl ModelSource {
     pub(crate) fn wrong(&self, problem: impl Into<String>) -> DdlError {
         match self {
             Self::Run(run) => DdlError::run(run.path(), problem),
-            Self::Packed(_) | Self::Builtin(_) => DdlError::Model {
-                model: self.to_string(),
-                problem: problem.into(),
-            },
+            Self::Packed(_) | Self::Builtin(_) => DdlError::Model { model: self.to_string(), problem: problem.into() },
         }
     }
 }

@@ -17,11 +17,7 @@ pub struct InitialModel {
 /// The training of a trained model's forecasting network on few more recordings: fewer steps with a smaller step size.
 #[must_use]
 pub fn fine_tuning_config(variant: Variant) -> TrainingConfig {
-    TrainingConfig {
-        epochs: 5,
-        learning_rate: 1e-4,
-        ..TrainingConfig::recommended(variant)
-    }
+    TrainingConfig { epochs: 5, learning_rate: 1e-4, ..TrainingConfig::recommended(variant) }
 }
 
 /// The training of a trained model's proposal network on few more recordings: fewer steps with a smaller step size.

@@ -23,10 +23,7 @@ impl ValidationPart {
     /// a fifth of the recordings as a whole, at least one, spread evenly over those with windows.
     #[must_use]
     pub fn of_own(fold: &Fold<'_>) -> Self {
-        let ends = Self {
-            share: SHARE,
-            recordings: Vec::new(),
-        };
+        let ends = Self { share: SHARE, recordings: Vec::new() };
         let rule = Convention::Own.headline_rule();
         let pedestrians = |windows: &[Window]| windows.iter().map(Window::len).sum::<usize>() as f64;
         let at_the_ends = pedestrians(&fold.training_split(rule, SHARE).validation);
@@ -44,9 +41,7 @@ impl ValidationPart {
         let in_the_middle_of = |part: usize| (2 * part + 1) * recordings.len() / (2 * count);
         Self {
             share: 0.0,
-            recordings: (0..count)
-                .map(|part| recordings[in_the_middle_of(part)].name().to_owned())
-                .collect(),
+            recordings: (0..count).map(|part| recordings[in_the_middle_of(part)].name().to_owned()).collect(),
         }
     }
 }

@@ -73,9 +73,7 @@ impl ObservedPedestrian {
             uncertainty: quality.uncertainty(),
             familiarity: forecast.familiarity(i),
             spread: (0..HORIZON).filter_map(|t| forecast.scale(i, t)).collect(),
-            regions: regions
-                .filter_map(|&probability| Region::of(forecast, i, probability))
-                .collect(),
+            regions: regions.filter_map(|&probability| Region::of(forecast, i, probability)).collect(),
         }
     }
 }
@@ -151,10 +149,7 @@ impl<'a> Path<'a> {
 
 impl<'a> MomentHead<'a> {
     fn of(moment: &Moment<'a>) -> Self {
-        Self {
-            scene: moment.scene,
-            observed_until: moment.observed_until(),
-        }
+        Self { scene: moment.scene, observed_until: moment.observed_until() }
     }
 }
 
@@ -166,10 +161,8 @@ pub fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, ser
     let mut text = String::new();
     for moment in moments {
         for i in 0..moment.window.len() {
-            let hypotheses = (0..moment.forecast.hypotheses()).map(|k| Hypothesis {
-                weight: moment.forecast.weight(i, k),
-                path: Path::of(moment, i, k),
-            });
+            let hypotheses = (0..moment.forecast.hypotheses())
+                .map(|k| Hypothesis { weight: moment.forecast.weight(i, k), path: Path::of(moment, i, k) });
             let line = PedestrianLine {
                 moment: MomentHead::of(moment),
                 pedestrian: ObservedPedestrian::of(moment, i, regions),
@@ -200,12 +193,8 @@ pub fn joint_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, se
             moment: MomentHead::of(moment),
             frames: moment.frames(),
             futures: futures.collect(),
-            groups: groups
-                .map(|group| group.into_iter().map(|i| moment.window.name(i)).collect())
-                .collect(),
-            pedestrians: pedestrians
-                .map(|i| ObservedPedestrian::of(moment, i, regions))
-                .collect(),
+            groups: groups.map(|group| group.into_iter().map(|i| moment.window.name(i)).collect()).collect(),
+            pedestrians: pedestrians.map(|i| ObservedPedestrian::of(moment, i, regions)).collect(),
         };
         text += &serde_json::to_string(&line)?;
         text.push('\n');

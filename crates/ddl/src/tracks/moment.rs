@@ -23,13 +23,7 @@ pub struct Moment<'a> {
 impl<'a> Moment<'a> {
     /// A forecast of one scene, without certificates.
     pub fn new(window: &'a Window, forecast: &'a Forecast, clock: Clock) -> Self {
-        Self {
-            scene: None,
-            window,
-            forecast,
-            certified: None,
-            clock,
-        }
+        Self { scene: None, window, forecast, certified: None, clock }
     }
 
     /// The certificate of a pedestrian's hypothesis, if they were asked for.

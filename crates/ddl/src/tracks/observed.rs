@@ -90,9 +90,8 @@ impl ObservedTracks {
     pub fn estimated(&self) -> Vec<String> {
         let mut told = Vec::new();
         let windows = self.windows.iter();
-        let qualities: Vec<ObservationQuality> = windows
-            .flat_map(|window| (0..window.len()).map(|i| window.quality(i)))
-            .collect();
+        let qualities: Vec<ObservationQuality> =
+            windows.flat_map(|window| (0..window.len()).map(|i| window.quality(i))).collect();
         let late = qualities.iter().filter(|quality| !quality.is_whole()).count();
         let carried = qualities.iter().filter(|quality| quality.age > 0.0).count();
         if late + carried > 0 {
@@ -146,10 +145,7 @@ impl ObservedTracks {
 
     /// A note on the pedestrians at the last moment who are in no window.
     fn missing(&self) -> Option<String> {
-        let window = self
-            .windows
-            .last()
-            .filter(|_| self.completeness != Completeness::Whole)?;
+        let window = self.windows.last().filter(|_| self.completeness != Completeness::Whole)?;
         let last = window.frames()[OBSERVED - 1];
         let rows = self.recording.at(last);
         let is_missing = |row: &&Observation| !window.pedestrians().contains(&row.pedestrian);

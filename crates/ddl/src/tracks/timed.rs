@@ -40,12 +40,7 @@ impl TimedRecording {
             format!("a step of 0.4 s is taken as {step}; give --fps, --dt or --frame-step if this is wrong")
         });
         let clock = clock.map_or_else(|| Clock::with_frame_step(rows.frame_step()), Ok)?;
-        Ok(Self {
-            notes,
-            recording: rows.on_clock(clock)?,
-            clock,
-            guessed,
-        })
+        Ok(Self { notes, recording: rows.on_clock(clock)?, clock, guessed })
     }
 }
 

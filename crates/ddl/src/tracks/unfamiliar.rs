@@ -57,19 +57,10 @@ mod tests {
         let forecast = Forecast::with_equal_weights(2, 1, vec![[0.0; 2]; 24]).unwrap();
         let forecast = forecast.with_familiarity(vec![0.010_1, 0.009_9]).unwrap();
         let hall = SceneName::new("hall").unwrap();
-        let moment = Moment {
-            scene: Some(&hall),
-            ..Moment::new(&window, &forecast, clock)
-        };
-        assert_eq!(
-            (moment.microseconds(), moment.observed_until()),
-            (4_800_000, FrameNumber::Between(33.6))
-        );
+        let moment = Moment { scene: Some(&hall), ..Moment::new(&window, &forecast, clock) };
+        assert_eq!((moment.microseconds(), moment.observed_until()), (4_800_000, FrameNumber::Between(33.6)));
         let frames = moment.frames();
-        assert_eq!(
-            (frames.len(), frames[0], frames[4]),
-            (12, FrameNumber::Between(36.4), FrameNumber::Between(47.6))
-        );
+        assert_eq!((frames.len(), frames[0], frames[4]), (12, FrameNumber::Between(36.4), FrameNumber::Between(47.6)));
         let mut motions = UnfamiliarMotions::default();
         motions.add(&[moment, moment]);
         let told = motions.warning().unwrap();

@@ -17,9 +17,7 @@ pub fn windows_of(
     let longest = LiveTracks::LONGEST_GAP;
     for (name, seconds) in [("max_age", max_age), ("every", every)] {
         if let Some(seconds) = seconds.filter(|seconds| !(0.0..=longest).contains(seconds)) {
-            return Err(format!(
-                "{name} is {seconds}; it must be a number of seconds from 0 to {longest}"
-            ));
+            return Err(format!("{name} is {seconds}; it must be a number of seconds from 0 to {longest}"));
         }
     }
     // With clocks of their own, too, the last row is the last moment.

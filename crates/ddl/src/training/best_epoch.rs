@@ -29,13 +29,7 @@ mod tests {
     fn epochs(errors: &[f64]) -> Vec<EpochReport> {
         (1..)
             .zip(errors)
-            .map(|(epoch, &error)| EpochReport {
-                epoch,
-                loss: 1.0,
-                batches: 1,
-                seconds: 1.0,
-                validation: Some(error),
-            })
+            .map(|(epoch, &error)| EpochReport { epoch, loss: 1.0, batches: 1, seconds: 1.0, validation: Some(error) })
             .collect()
     }
 

@@ -40,21 +40,12 @@ pub(super) fn train(
     let windows = training_windows(request, &fold, window_rule)?;
     let starting_weights = || {
         let from = request.from.as_ref();
-        from.map(|source| StartingWeights::of(source, &request.star, &request.goals, request.device))
-            .transpose()
+        from.map(|source| StartingWeights::of(source, &request.star, &request.goals, request.device)).transpose()
     };
     let start = starting_weights()?;
     let run = &request.out;
     let began_with = start.as_ref().map(|start| start.record.clone());
-    let config = config_of(
-        request,
-        dataset.convention(),
-        &fold,
-        window_rule,
-        &windows,
-        began_with,
-        device,
-    );
+    let config = config_of(request, dataset.convention(), &fold, window_rule, &windows, began_with, device);
     let _claimed = run.claim(&config)?;
     if !run.fingerprints().is_file() {
         let mut fingerprints = TrackFingerprints::of(learned_from(&fold).flat_map(tracks_of));
@@ -86,11 +77,7 @@ pub(super) fn train(
     if request.until == TrainingStage::Goals {
         return Ok(());
     }
-    let stage = NetworkStage {
-        config: &config,
-        run,
-        device,
-    };
+    let stage = NetworkStage { config: &config, run, device };
     stage.train(&fold, windows, network, observe)
 }
 
@@ -113,11 +100,7 @@ fn check(request: &TrainingRequest) -> Result<(), DdlError> {
     request.star.check()?;
     request.training.check(request.star.variant)?;
     request.goals.check()?;
-    if (0.0..1.0).contains(&request.validation) {
-        Ok(())
-    } else {
-        Err(DdlError::Validation(request.validation))
-    }
+    if (0.0..1.0).contains(&request.validation) { Ok(()) } else { Err(DdlError::Validation(request.validation)) }
 }
 
 /// The `config.json` of a run, from the request, the training data and the device.

@@ -49,16 +49,8 @@ impl StartingWeights {
         if let Some(proposal) = &proposal {
             hash(proposal, &mut hasher);
         }
-        let record = InitialModel {
-            model: source.to_string(),
-            sha256: in_hex(hasher),
-        };
-        Ok(Self {
-            network,
-            proposal,
-            record,
-            fingerprints: model.goal_model().fingerprints().clone(),
-        })
+        let record = InitialModel { model: source.to_string(), sha256: in_hex(hasher) };
+        Ok(Self { network, proposal, record, fingerprints: model.goal_model().fingerprints().clone() })
     }
 }
 

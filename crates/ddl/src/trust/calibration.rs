@@ -162,11 +162,7 @@ mod tests {
             spread_growth: 0.5,
             ..Calibration::fitted().clone()
         };
-        let OfPaces {
-            standing,
-            slow,
-            walking,
-        } = &mut calibration.paces;
+        let OfPaces { standing, slow, walking } = &mut calibration.paces;
         for (of_pace, speed) in [(standing, 1.0), (slow, 2.0), (walking, 0.1)] {
             of_pace.spread_of_speed = speed;
             of_pace.spread_of_goals = 0.2;

@@ -53,11 +53,7 @@ impl TrainingMotions {
         }
         let (mut learned, mut apart) = (Vec::new(), Vec::new());
         for (block, motions) in motions_of_all.chunks(BLOCK).enumerate() {
-            let to = if block % HELD_OUT_EVERY == HELD_OUT_EVERY - 1 {
-                &mut apart
-            } else {
-                &mut learned
-            };
+            let to = if block % HELD_OUT_EVERY == HELD_OUT_EVERY - 1 { &mut apart } else { &mut learned };
             to.extend_from_slice(motions);
         }
         let apart = if apart.is_empty() { &learned } else { &apart };
@@ -114,11 +110,7 @@ impl TrainingMotions {
         } else {
             let above = self.distances.partition_point(|&d| d <= distance).max(1);
             let [from, to] = [self.distances[above - 1], self.distances[above]];
-            let part = if to > from {
-                ((distance - from) / (to - from)).max(0.0)
-            } else {
-                0.0
-            };
+            let part = if to > from { ((distance - from) / (to - from)).max(0.0) } else { 0.0 };
             let below = ((above - 1) as f64 + part) / PARTS as f64;
             (1.0 - below) * (1.0 - tail) + tail
         };
@@ -201,19 +193,12 @@ mod tests {
         let numbers = |m: &TrainingMotions| [&m.mean, m.precision.as_flattened(), &m.distances, &[m.fastest]].concat();
         let familiarity = expected.probes.iter().map(|probe| found.familiarity(probe, 0.5));
         let jump = |far: f64| std::array::from_fn::<Position, 8, _>(|t| [0.0, if t == 4 { far } else { 0.0 }]);
-        assert!(
-            [1e3, 1e6, 1e200]
-                .iter()
-                .all(|&far| (found.familiarity(&jump(far), 0.5) / LEAST - 1.0).abs() < 1e-9)
-        );
+        assert!([1e3, 1e6, 1e200].iter().all(|&far| (found.familiarity(&jump(far), 0.5) / LEAST - 1.0).abs() < 1e-9));
         let found: Vec<f64> = numbers(&found).into_iter().chain(familiarity).collect();
         let expected = [numbers(&expected.motions), expected.familiarity].concat();
         assert_eq!(found.len(), expected.len());
         for (found, expected) in found.iter().zip(&expected) {
-            assert!(
-                (found - expected).abs() < 1e-7 * expected.abs() + 1e-12,
-                "{found} {expected}"
-            );
+            assert!((found - expected).abs() < 1e-7 * expected.abs() + 1e-12, "{found} {expected}");
         }
         assert_eq!(TrainingMotions::learn(&[], 0.4), None);
     }

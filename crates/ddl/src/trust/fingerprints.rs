@@ -56,10 +56,7 @@ impl TrackFingerprints {
             one_in *= 2;
             hashes.retain(|hash| hash % one_in == 0);
         }
-        Self {
-            one_in,
-            hashes: hashes.into_iter().collect(),
-        }
+        Self { one_in, hashes: hashes.into_iter().collect() }
     }
 
     /// The share of the hashes of recordings, which may be parts of one, that are known, if the model was trained on
@@ -74,10 +71,7 @@ impl TrackFingerprints {
     }
 
     fn known_from(&self, least: f64, recordings: &[&Recording]) -> Option<f64> {
-        let all = recordings
-            .iter()
-            .flat_map(|recording| tracks_of(recording))
-            .flat_map(hashes);
+        let all = recordings.iter().flat_map(|recording| tracks_of(recording)).flat_map(hashes);
         let all: BTreeSet<u32> = all.filter(|hash| hash % self.one_in == 0).collect();
         let known = all.iter().filter(|hash| self.hashes.binary_search(hash).is_ok());
         let known = known.count();
@@ -109,9 +103,7 @@ pub(crate) fn tracks_of(recording: &Recording) -> Vec<Vec<Position>> {
     let mut rows: Vec<_> = recording.observations().iter().collect();
     rows.sort_by_key(|row| row.pedestrian);
     let tracks = rows.chunk_by(|a, b| a.pedestrian == b.pedestrian);
-    tracks
-        .map(|track| track.iter().map(|row| row.position).collect())
-        .collect()
+    tracks.map(|track| track.iter().map(|row| row.position).collect()).collect()
 }
 
 /// Where a track crosses a line.
@@ -164,10 +156,7 @@ fn crossings_of(from: Position, to: Position) -> Vec<Crossing> {
 
 /// The hash of these crossings, of both directions and with either name of the axes.
 fn hash(crossings: &[Crossing; CROSSINGS]) -> u32 {
-    let exchanged = crossings.map(|crossing| Crossing {
-        axis: 1 - crossing.axis,
-        ..crossing
-    });
+    let exchanged = crossings.map(|crossing| Crossing { axis: 1 - crossing.axis, ..crossing });
     let backwards = |mut crossings: [Crossing; CROSSINGS]| {
         crossings.reverse();
         crossings

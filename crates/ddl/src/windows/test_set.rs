@@ -124,10 +124,7 @@ impl TestSet {
         let part = if whole.is_empty() {
             ValidationPart::of_own(&dataset.whole())
         } else {
-            ValidationPart {
-                share: 0.0,
-                recordings: whole.to_vec(),
-            }
+            ValidationPart { share: 0.0, recordings: whole.to_vec() }
         };
         let fold = dataset.whole().with_validation_recordings(&part.recordings)?;
         let (convention, rule) = (dataset.convention(), dataset.convention().headline_rule());
@@ -146,9 +143,7 @@ impl TestSet {
     fn of_own(goals: &GoalModel, dataset: &Dataset, pedestrians: Option<usize>) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let recordings = dataset.recordings();
-        let left_out = recordings
-            .iter()
-            .filter(|r| data.convention == Convention::Own && r.name() == data.fold);
+        let left_out = recordings.iter().filter(|r| data.convention == Convention::Own && r.name() == data.fold);
         let mut tested: Vec<&Recording> = left_out.collect();
         if tested.is_empty() {
             tested = recordings.iter().collect();
@@ -174,10 +169,8 @@ impl TestSet {
 
     /// The test windows of the fold, or a seeded part of them with about `pedestrians` pedestrians.
     pub(crate) fn new(fold: &Fold<'_>, convention: Convention, pedestrians: Option<usize>) -> Self {
-        let by_rule: Vec<(WindowRule, Vec<Window>)> = rules(convention)
-            .into_iter()
-            .map(|rule| (rule, fold.test_windows(rule)))
-            .collect();
+        let by_rule: Vec<(WindowRule, Vec<Window>)> =
+            rules(convention).into_iter().map(|rule| (rule, fold.test_windows(rule))).collect();
         let mut index_of: BTreeMap<(String, i64, Vec<PedestrianId>), usize> = BTreeMap::new();
         let mut windows: Vec<Window> = Vec::new();
         let mut rules = Vec::new();
@@ -185,11 +178,7 @@ impl TestSet {
         for (rule, of_rule) in by_rule.into_iter().rev() {
             let mut indices = Vec::with_capacity(of_rule.len());
             for window in of_rule {
-                let key = (
-                    window.recording().to_owned(),
-                    window.start_frame(),
-                    window.pedestrians().to_vec(),
-                );
+                let key = (window.recording().to_owned(), window.start_frame(), window.pedestrians().to_vec());
                 let index = *index_of.entry(key).or_insert_with(|| {
                     windows.push(window);
                     windows.len() - 1
@@ -199,14 +188,7 @@ impl TestSet {
             rules.push((rule, indices));
         }
         rules.reverse();
-        Self {
-            convention,
-            fold: fold.name().to_owned(),
-            windows,
-            rules,
-            subset: None,
-        }
-        .at_most(pedestrians)
+        Self { convention, fold: fold.name().to_owned(), windows, rules, subset: None }.at_most(pedestrians)
     }
 
     /// The validation part: the last part of the fold's training recordings.
@@ -223,14 +205,7 @@ impl TestSet {
             Fold::NO_HELD_OUT => convention.name(),
             left_out => left_out,
         };
-        let part = Self {
-            convention,
-            fold: fold_name.to_owned(),
-            windows,
-            rules,
-            subset: None,
-        }
-        .at_most(pedestrians);
+        let part = Self { convention, fold: fold_name.to_owned(), windows, rules, subset: None }.at_most(pedestrians);
         let mut parts = Vec::new();
         if fraction > 0.0 {
             parts.push(format!("the last {fraction} of the TRAINING recordings"));
@@ -242,10 +217,7 @@ impl TestSet {
         }
         let name = format!("validation: {}", parts.join(", and "));
         let subset = part.subset.map_or(name.clone(), |subset| format!("{name}; {subset}"));
-        Self {
-            subset: Some(subset),
-            ..part
-        }
+        Self { subset: Some(subset), ..part }
     }
 
     fn at_most(self, pedestrians: Option<usize>) -> Self {
@@ -254,15 +226,8 @@ impl TestSet {
         };
         // The text is the same for every fold, because the folds of a benchmark share a table.
         let subset = format!("where a fold has more than {pedestrians} pedestrians, a seeded part of its windows");
-        let part = if self.pedestrians() > pedestrians {
-            self.part(pedestrians)
-        } else {
-            self
-        };
-        Self {
-            subset: Some(subset),
-            ..part
-        }
+        let part = if self.pedestrians() > pedestrians { self.part(pedestrians) } else { self };
+        Self { subset: Some(subset), ..part }
     }
 
     pub(crate) fn pedestrians(&self) -> usize {
@@ -342,10 +307,7 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
         Some(model) => format!("or take a model that was trained without it (--model {model})"),
         None => "or train a model without it".to_owned(),
     };
-    Err(goals.source().wrong(format!(
-        "was trained on {}; evaluate it on other recordings, {other}",
-        known.join(", ")
-    )))
+    Err(goals.source().wrong(format!("was trained on {}; evaluate it on other recordings, {other}", known.join(", "))))
 }
 
 /// A short name in the results for recordings that are tested together.

@@ -33,10 +33,7 @@ fn a_packed_model_with_wrong_contents_and_a_right_digest_is_refused() {
     let (header, numbers) = parts(&whole).expect("a valid file");
     let written = |header: &Value, numbers: &[u8]| with_digest(&join(header, numbers)).expect("a digest");
     let load = |file: &[u8]| with_file(&path, file, |path| Ddl::load(path, DeviceChoice::Cpu));
-    assert!(
-        load(&written(&header, numbers)).is_ok(),
-        "without an edit it is a model"
-    );
+    assert!(load(&written(&header, numbers)).is_ok(), "without an edit it is a model");
     let shaped = |edit: fn(&mut Vec<Value>)| {
         let mut header = header.clone();
         edit(matrix(&mut header));

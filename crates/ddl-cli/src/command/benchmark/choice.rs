@@ -101,11 +101,7 @@ impl PlanOptions {
         protocols.sort_unstable();
         protocols.dedup();
         // The protocol `published` compares with the paper, so it needs the paper's recipe.
-        let name = if protocols.contains(&Protocol::Published) {
-            Recipe::Published
-        } else {
-            Recipe::Recommended
-        };
+        let name = if protocols.contains(&Protocol::Published) { Recipe::Published } else { Recipe::Recommended };
         if name == Recipe::Published && protocols.iter().any(|protocol| protocol.gives_recording_memory()) {
             bail!(
                 "the protocol published needs the paper's recipe, whose models have no memory of a place: leave out \
@@ -128,29 +124,20 @@ impl PlanOptions {
         } else {
             let names = Method::ALL.map(Method::name);
             let methods = self.variants.iter();
-            methods
-                .map(|name| Ok(Method::ALL[one_of("variant", name, &names)?]))
-                .collect::<anyhow::Result<_>>()?
+            methods.map(|name| Ok(Method::ALL[one_of("variant", name, &names)?])).collect::<anyhow::Result<_>>()?
         };
         let settings = Settings {
             profile: self.profile,
             convention,
             data,
             device: self.device,
-            cargo_profile: if cfg!(debug_assertions) {
-                "dev".to_owned()
-            } else {
-                "release".to_owned()
-            },
+            cargo_profile: if cfg!(debug_assertions) { "dev".to_owned() } else { "release".to_owned() },
             epochs: self.epochs.unwrap_or(work.epochs),
             train_pedestrians: self.train_pedestrians.or(work.train_pedestrians),
             proposal_steps: work.proposal_steps,
             test_pedestrians: self.test_pedestrians.or(work.test_pedestrians),
             protocols,
-            recipe: Training {
-                name,
-                optimiser: work.optimiser,
-            },
+            recipe: Training { name, optimiser: work.optimiser },
         };
         Plan::new(settings, &folds, &methods, &self.seeds)
     }

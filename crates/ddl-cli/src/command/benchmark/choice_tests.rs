@@ -28,22 +28,14 @@ fn planned(words: &str) -> String {
     let end = train.iter().position(|word| word == "--out").unwrap();
     let scored = plan.settings.test_pedestrians;
     let scored = scored.map_or("all".to_owned(), |n| n.to_string());
-    format!(
-        "{} {} {scored}: {}",
-        out.display(),
-        plan.tasks.len(),
-        train[..end].join(" ")
-    )
+    format!("{} {} {scored}: {}", out.display(), plan.tasks.len(), train[..end].join(" "))
 }
 
 #[test]
 fn the_recipe_and_the_folder_follow_the_protocols() {
     let published = "--protocol published,fair,single --profile";
     for (words, expected) in [
-        (
-            "--protocol single,fair --protocol fair",
-            "star-quick 5 2500: --epochs 10 --recipe recommended",
-        ),
+        ("--protocol single,fair --protocol fair", "star-quick 5 2500: --epochs 10 --recipe recommended"),
         (
             "--profile smoke",
             "star-smoke 2 150: --epochs 1 --train-pedestrians 600 --proposal-steps 40 --recipe recommended",
@@ -83,10 +75,7 @@ fn unknown_names_are_refused_with_the_known_ones() {
         error("--variants star,ful"),
         "unknown variant \"ful\": choose from full, no-goal-shift, no-dynamics, star, perceptron"
     );
-    assert_eq!(
-        error("--folds plaza"),
-        "unknown fold \"plaza\": choose from eth, hotel, univ, zara1, zara2"
-    );
+    assert_eq!(error("--folds plaza"), "unknown fold \"plaza\": choose from eth, hotel, univ, zara1, zara2");
     let error_of_own = parsed("--convention own").recordings().unwrap_err();
     assert!(error_of_own.to_string().contains("`ddl train`"), "{error_of_own}");
     // A named folder without recordings is an error, not a reason to simulate.

@@ -33,10 +33,7 @@ impl Display {
             tasks: tasks.iter().map(|task| (task.id.clone(), 0.0)).collect(),
             ended: 0,
         };
-        Self {
-            mode,
-            state: Mutex::new(state),
-        }
+        Self { mode, state: Mutex::new(state) }
     }
 
     pub(super) fn hear(&self, task: &Task, event: Event<'_>) {

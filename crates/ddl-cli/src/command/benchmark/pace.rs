@@ -10,10 +10,7 @@ pub(super) struct Pace {
 impl Pace {
     pub(super) fn of_seconds(goals: f64, training: f64, scores: f64) -> Self {
         let whole = goals + training + scores;
-        Self {
-            goals: goals / whole,
-            training: (goals + training) / whole,
-        }
+        Self { goals: goals / whole, training: (goals + training) / whole }
     }
 
     /// For a task that takes the goals of another one.

@@ -108,20 +108,11 @@ impl Plan {
                     let fold = fold.to_string();
                     let id = format!("{fold}-{}-{seed}", variant.name());
                     ensure!(tasks.iter().all(|task| task.id != id), "the options ask for {id} twice");
-                    tasks.push(Task {
-                        id,
-                        fold,
-                        variant,
-                        seed,
-                    });
+                    tasks.push(Task { id, fold, variant, seed });
                 }
             }
         }
-        Ok(Self {
-            format: FORMAT,
-            settings,
-            tasks,
-        })
+        Ok(Self { format: FORMAT, settings, tasks })
     }
 
     /// The earlier task of the same fold and seed, whose goals this task uses.
@@ -164,9 +155,7 @@ impl Plan {
 
     pub(super) fn evaluate_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let data = self.settings.data.as_ref().map(|data| data.display());
-        let words = ProgramArguments::of("evaluate")
-            .path("--model", &task.run_folder(out))
-            .option("--data", data);
+        let words = ProgramArguments::of("evaluate").path("--model", &task.run_folder(out)).option("--data", data);
         let protocols = self.settings.protocols.iter();
         let words = protocols.fold(words, |words, protocol| words.option("--protocol", Some(protocol)));
         let words = words.option("--test-pedestrians", self.settings.test_pedestrians);
@@ -174,9 +163,7 @@ impl Plan {
     }
 
     fn on_machine(&self, words: ProgramArguments, threads: usize) -> ProgramArguments {
-        words
-            .option("--device", Some(self.settings.device))
-            .option("--threads", Some(threads))
+        words.option("--device", Some(self.settings.device)).option("--threads", Some(threads))
     }
 
     /// Writes `plan.json` into `out`.
@@ -219,12 +206,7 @@ impl Plan {
 
     fn check_same_settings(&self, before: &Self, out: &Path) -> anyhow::Result<()> {
         // The recordings are identified by their hash, so their folder may differ.
-        let comparable = |settings: &Settings| {
-            serde_json::to_value(Settings {
-                data: None,
-                ..settings.clone()
-            })
-        };
+        let comparable = |settings: &Settings| serde_json::to_value(Settings { data: None, ..settings.clone() });
         let (now, then) = (comparable(&self.settings)?, comparable(&before.settings)?);
         let differences: Vec<String> = now
             .as_object()

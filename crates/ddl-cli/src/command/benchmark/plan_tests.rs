@@ -4,10 +4,7 @@ use super::super::choice::tests::plan_of;
 use super::*;
 
 fn published(words: &str) -> Plan {
-    plan_of(&format!(
-        "--profile paper --protocol published,fair,single --epochs 4 {words}"
-    ))
-    .unwrap()
+    plan_of(&format!("--profile paper --protocol published,fair,single --epochs 4 {words}")).unwrap()
 }
 
 fn of_eth() -> Plan {
@@ -95,10 +92,7 @@ fn results_of_other_settings_or_of_another_version_do_not_mix() {
     old["settings"].as_object_mut().unwrap().remove("protocols");
     fs::write(&file, old.to_string()).unwrap();
     let message = refused(&before);
-    assert!(
-        message.contains("its plan has layout 2, this version writes 3"),
-        "{message}"
-    );
+    assert!(message.contains("its plan has layout 2, this version writes 3"), "{message}");
     assert_eq!(fs::read_to_string(&file).unwrap(), old.to_string());
     fs::write(&file, "{").unwrap();
     let message = refused(&before);

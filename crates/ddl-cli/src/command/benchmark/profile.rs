@@ -56,11 +56,7 @@ impl Optimiser {
     /// Small batches and step sizes that decay: the best of single-step training within a few thousand steps. Chosen on
     /// validation splits of training recordings.
     fn short() -> Self {
-        Self {
-            batch_pedestrians: 16,
-            learning_rate: 1e-3,
-            schedule: LearningRateSchedule::Cosine,
-        }
+        Self { batch_pedestrians: 16, learning_rate: 1e-3, schedule: LearningRateSchedule::Cosine }
     }
 }
 

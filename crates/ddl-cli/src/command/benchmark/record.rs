@@ -27,10 +27,7 @@ impl Record {
 
     pub(super) fn write(task: &Task, out: &Path, seconds: f64) -> anyhow::Result<()> {
         let file = task.folder(out).join(FILE);
-        let record = Self {
-            task: task.id.clone(),
-            seconds,
-        };
+        let record = Self { task: task.id.clone(), seconds };
         let text = serde_json::to_vec(&record)?;
         write_atomically(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }

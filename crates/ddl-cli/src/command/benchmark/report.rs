@@ -20,10 +20,7 @@ pub(super) fn write(plan: &Plan, runs: &[PathBuf], out: &Path, reporting: &Repor
         Profile::Smoke => "smoke (a test of the program: the numbers mean nothing)".to_owned(),
         profile => profile.to_string(),
     };
-    let title = format!(
-        "Benchmark: {}, {profile}, recipe {}",
-        settings.convention, settings.recipe.name
-    );
+    let title = format!("Benchmark: {}, {profile}, recipe {}", settings.convention, settings.recipe.name);
     if runs.is_empty() {
         return Ok(());
     }
@@ -39,12 +36,7 @@ pub(super) fn write(plan: &Plan, runs: &[PathBuf], out: &Path, reporting: &Repor
         reporting.telling.print(&format!("\n{}\n\n", text.trim_end()))?;
     }
     let main_tables = summary.map(|_| ("main tables", SUMMARY));
-    let others = [
-        ("report", "report.md"),
-        ("", "report.json"),
-        ("page", "report.html"),
-        ("figures", "figures"),
-    ];
+    let others = [("report", "report.md"), ("", "report.json"), ("page", "report.html"), ("figures", "figures")];
     for (what, name) in main_tables.into_iter().chain(others) {
         tell(format_args!("{what:12} {}", out.join(name).display()));
     }

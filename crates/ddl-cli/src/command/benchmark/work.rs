@@ -144,10 +144,9 @@ impl Workers {
             reached.set(reached.get().max(pace.at(stage, fraction)));
             watch(task, Event::Advanced(reached.get(), &format!("{stage} {message}")));
         };
-        for arguments in [
-            plan.train_arguments(task, out, self.threads),
-            plan.evaluate_arguments(task, out, self.threads),
-        ] {
+        for arguments in
+            [plan.train_arguments(task, out, self.threads), plan.evaluate_arguments(task, out, self.threads)]
+        {
             let ended = self.run_step(&mut log, &arguments, interrupt, &tell);
             // A process that was asked to stop has saved its state and ended.
             if interrupt.wishes() > 0 {
@@ -174,11 +173,7 @@ impl Workers {
         let errors = log.try_clone().context("cannot share the log")?;
         let (program, leading) = self.program.split_first().context("no program to run")?;
         let mut command = Command::new(program);
-        command
-            .args(leading)
-            .args(arguments)
-            .env("DDL_COMMIT", &self.commit)
-            .stderr(Stdio::from(errors));
+        command.args(leading).args(arguments).env("DDL_COMMIT", &self.commit).stderr(Stdio::from(errors));
         child::run(&mut command, interrupt, |line| {
             match serde_json::from_str::<ProgressLine<'_>>(line) {
                 Ok(progress) if progress.total > 0 => {
@@ -212,9 +207,7 @@ fn failure(task: &Task, out: &Path, what: &str) -> TaskEnd {
     let lines: Vec<&str> = text.lines().collect();
     let last = &lines[lines.len().saturating_sub(LAST_LINES)..];
     let end = last.join("\n    ");
-    TaskEnd::Failed {
-        reason: format!("{what}; the end of {}:\n    {end}", log.display()),
-    }
+    TaskEnd::Failed { reason: format!("{what}; the end of {}:\n    {end}", log.display()) }
 }
 
 #[cfg(test)]

@@ -21,12 +21,8 @@ impl Bench {
         fs::write(&script, STAND_IN).unwrap();
         // The shell reads the script instead of executing it. Execution could fail, because a process of another test
         // may still hold the file open for writing.
-        let workers = Workers {
-            program: vec!["sh".into(), script.into()],
-            jobs,
-            threads: 1,
-            commit: "of a test".to_owned(),
-        };
+        let workers =
+            Workers { program: vec!["sh".into(), script.into()], jobs, threads: 1, commit: "of a test".to_owned() };
         Self { folder, workers }
     }
 
@@ -82,16 +78,12 @@ fn every_task_is_trained_scored_and_kept_the_second_time() {
 fn a_failed_task_shows_its_log_and_lets_the_others_run() {
     let mut bench = Bench::new(1);
     let ends = bench.run(&plan(&["broken", "fine"]));
-    let [TaskEnd::Failed { reason }, TaskEnd::Finished { .. }] = &ends[..] else {
-        panic!("{ends:?}")
-    };
+    let [TaskEnd::Failed { reason }, TaskEnd::Finished { .. }] = &ends[..] else { panic!("{ends:?}") };
     assert!(reason.contains("`ddl train` ended with exit status: 1"), "{reason}");
     assert!(reason.contains("the loss is not a number") && reason.contains("broken-full-1/log.txt"));
     bench.workers.program = vec!["/no/such/program".into()];
     let ends = bench.run(&plan(&["a"]));
-    let [TaskEnd::Failed { reason }] = &ends[..] else {
-        panic!("{ends:?}")
-    };
+    let [TaskEnd::Failed { reason }] = &ends[..] else { panic!("{ends:?}") };
     assert!(reason.contains("cannot start /no/such/program"));
 }
 
@@ -140,9 +132,7 @@ fn a_second_interrupt_kills_a_task_that_ignores_the_first() {
         }
     };
     let start = Instant::now();
-    let ends = bench
-        .workers
-        .run(&plan(&["stubborn"]), &bench.out(), &watch, &interrupt);
+    let ends = bench.workers.run(&plan(&["stubborn"]), &bench.out(), &watch, &interrupt);
     assert_eq!(ends, [TaskEnd::Interrupted]);
     // Without the second interrupt it would have slept a hundred seconds.
     assert!(start.elapsed() < Duration::from_secs(20));
@@ -153,11 +143,7 @@ fn a_process_that_writes_into_a_log_holds_its_lock() {
     let folder = tempfile::tempdir().unwrap();
     let log = open_log(folder.path()).unwrap();
     assert!(!is_held(&log));
-    let mut left = Command::new("sleep")
-        .arg("0.3")
-        .stderr(Stdio::from(log.try_clone().unwrap()))
-        .spawn()
-        .unwrap();
+    let mut left = Command::new("sleep").arg("0.3").stderr(Stdio::from(log.try_clone().unwrap())).spawn().unwrap();
     // As when a benchmark is killed: its files are closed, and its process continues.
     drop(log);
     let next = open_log(folder.path()).unwrap();

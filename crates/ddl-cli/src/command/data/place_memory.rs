@@ -80,11 +80,7 @@ impl MemoryOfFile {
 }
 
 fn duration(seconds: f64) -> String {
-    if seconds < 6000.0 {
-        format!("{:.1} minutes", seconds / 60.0)
-    } else {
-        format!("{:.1} hours", seconds / 3600.0)
-    }
+    if seconds < 6000.0 { format!("{:.1} minutes", seconds / 60.0) } else { format!("{:.1} hours", seconds / 3600.0) }
 }
 
 impl Display for MemoryOfFile {
@@ -94,11 +90,9 @@ impl Display for MemoryOfFile {
         write!(f, "  {} frames a step of 0.4 s; ", self.memory.frame_step())?;
         match self.memory.summary().extent {
             None => write!(f, "no pedestrian was observed"),
-            Some([low, high]) => write!(
-                f,
-                "x from {:.2} to {:.2} m, y from {:.2} to {:.2} m",
-                low[0], high[0], low[1], high[1]
-            ),
+            Some([low, high]) => {
+                write!(f, "x from {:.2} to {:.2} m, y from {:.2} to {:.2} m", low[0], high[0], low[1], high[1])
+            }
         }
     }
 }

@@ -68,11 +68,7 @@ impl OtherProgram {
         let (fold, windows) = self.windows.windows(recordings)?;
         let convention = self.windows.convention(recordings, Convention::Star);
         let rule = self.windows.rule(convention);
-        let coverage = if self.intersection {
-            Coverage::Intersection
-        } else {
-            Coverage::Whole
-        };
+        let coverage = if self.intersection { Coverage::Intersection } else { Coverage::Whole };
         let matched = if file.is_dir() {
             external::read_samples(file, &windows, coverage)
         } else {
@@ -89,10 +85,8 @@ impl OtherProgram {
         let name = self.name.as_deref().unwrap_or(&stem);
         let mut rows = Vec::new();
         for &protocol in protocols {
-            let conditions = Conditions {
-                commit: commit.to_owned(),
-                ..Conditions::new(convention, rule, protocol, &*fold, name)
-            };
+            let conditions =
+                Conditions { commit: commit.to_owned(), ..Conditions::new(convention, rule, protocol, &*fold, name) };
             rows.extend(external::measure(&conditions, &matched)?);
         }
         let report = Report::new(format!("{name} on {fold}"), rows)?;

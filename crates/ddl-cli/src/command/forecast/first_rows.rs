@@ -94,10 +94,7 @@ impl SceneRows {
     /// of the stream reports that no pedestrian was observed long enough.
     fn warn(&mut self) -> bool {
         let warning = self.warning();
-        *self = Self {
-            is_done: true,
-            ..Self::default()
-        };
+        *self = Self { is_done: true, ..Self::default() };
         match warning {
             None | Some(PlausibilityWarning::Jump { .. } | PlausibilityWarning::NoSteps) => false,
             Some(warning) => {

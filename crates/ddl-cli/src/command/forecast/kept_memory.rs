@@ -33,11 +33,7 @@ impl KeptMemory {
         if !is_folder {
             memories.insert(None, Some(OpenMemory::open(path)?));
         }
-        Ok(Self {
-            path: path.to_owned(),
-            is_folder,
-            memories,
-        })
+        Ok(Self { path: path.to_owned(), is_folder, memories })
     }
 
     /// Refuses a stream of one scene with a folder, and one of several with a file.
@@ -153,11 +149,7 @@ impl KeptMemory {
 impl OpenMemory {
     fn open(path: &Path) -> anyhow::Result<Self> {
         let (file, read) = MemoryFile::open(path)?;
-        Ok(Self {
-            file,
-            read,
-            is_refusal_told: false,
-        })
+        Ok(Self { file, read, is_refusal_told: false })
     }
 
     fn begin(&mut self, scene: Option<&SceneName>, scenes: &mut LiveScenes, model: &Ddl) -> anyhow::Result<()> {

@@ -53,11 +53,7 @@ impl Seldom {
         if let Some(doubt) = doubt
             && let Some(new) = self.take_due()
         {
-            let since = if new as usize > rows {
-                format!(" ({new} since the last warning)")
-            } else {
-                String::new()
-            };
+            let since = if new as usize > rows { format!(" ({new} since the last warning)") } else { String::new() };
             tell(format_args!("warning: {doubt}{since}"));
         }
     }
@@ -72,10 +68,7 @@ impl LeftOut {
                 1 => String::new(),
                 _ => format!(" (the last of {new})"),
             };
-            tell(format_args!(
-                "error: {}{others}; this is left out, and the stream goes on",
-                words(error)
-            ));
+            tell(format_args!("error: {}{others}; this is left out, and the stream goes on", words(error)));
         }
     }
 
@@ -126,10 +119,7 @@ impl LeftOut {
     pub(super) fn dropped(&mut self, scenes: &LiveScenes) {
         self.dropped.count = scenes.dropped();
         if let Some(new) = self.dropped.take_due() {
-            tell(format_args!(
-                "warning: {} not forecast, because a later one of the scene came first",
-                frames(new)
-            ));
+            tell(format_args!("warning: {} not forecast, because a later one of the scene came first", frames(new)));
         }
     }
 
@@ -155,9 +145,7 @@ impl LeftOut {
         match self.wrong.count {
             0 => Ok(()),
             1 => Err(anyhow!("standard input: one line or frame was wrong, and was left out")),
-            count => Err(anyhow!(
-                "standard input: {count} lines or frames were wrong, and were left out"
-            )),
+            count => Err(anyhow!("standard input: {count} lines or frames were wrong, and were left out")),
         }
     }
 }

@@ -34,10 +34,8 @@ const MOST_TAKEN: usize = 4096;
 pub(super) fn run(command: &dyn Answer) -> anyhow::Result<()> {
     let model = command.stream().load()?;
     let memory = command.stream().memory.as_deref();
-    let watching = WatchedStream {
-        scenes: None,
-        memory: memory.map(|path| KeptMemory::open(path, &model)).transpose()?,
-    };
+    let watching =
+        WatchedStream { scenes: None, memory: memory.map(|path| KeptMemory::open(path, &model)).transpose()? };
     let watching = Arc::new(Mutex::new(watching));
     if memory.is_some() {
         // After Ctrl-C, the thread of the handler writes the memory.
@@ -291,11 +289,7 @@ impl Stream<'_> {
     fn observe(&mut self, frame: Frame) -> anyhow::Result<()> {
         let frame = to_ground(frame, self.homography.as_ref())?;
         let mut watching = lock(self.watching);
-        let (idle, ended) = if frame.is_first {
-            watching.forget_idle()
-        } else {
-            (Vec::new(), Ok(()))
-        };
+        let (idle, ended) = if frame.is_first { watching.forget_idle() } else { (Vec::new(), Ok(())) };
         for scene in idle {
             self.state.forget(&scene);
         }
@@ -316,8 +310,7 @@ impl Stream<'_> {
                 format!("pedestrian {name}{place} at {}", tracks.clock().words(misfit.tick))
             });
             self.observed += 1;
-            self.state
-                .tell_doubts(tracks, self.observed, self.forecast.tracks.are_thinned());
+            self.state.tell_doubts(tracks, self.observed, self.forecast.tracks.are_thinned());
             let is_idle = watching.scenes.as_ref().is_some_and(|scenes| scenes.waiting() == 0);
             if is_idle && !self.forecast.latest && !self.forecast.tracks.are_thinned() {
                 self.left_out.tell_if_few(MANY_ROWS, SEVERAL_FRAMES);
@@ -406,10 +399,7 @@ impl ForecastOutput {
             let file = options.open(path);
             file.with_context(|| format!("cannot write {}", path.display()))
         };
-        Ok(Self {
-            file: file_of(path).map(open).transpose()?,
-            begun: false,
-        })
+        Ok(Self { file: file_of(path).map(open).transpose()?, begun: false })
     }
 
     fn write(&mut self, text: &str) -> std::io::Result<()> {

@@ -42,10 +42,7 @@ impl StreamState {
     /// The forecast of window `i` with the adaptive regions of its scene.
     pub(crate) fn adapted(&mut self, windows: SceneWindows<'_>, i: usize, forecast: ddl::Forecast) -> ddl::Forecast {
         let scene = windows.scenes.get(i).cloned().flatten();
-        self.regions
-            .entry(scene)
-            .or_default()
-            .adapt(&windows.windows[i], forecast)
+        self.regions.entry(scene).or_default().adapt(&windows.windows[i], forecast)
     }
 
     /// Whether nothing was written yet; only the first call says so.

@@ -96,9 +96,7 @@ pub(super) fn text_of(
     clock: Clock,
     state: &mut StreamState,
 ) -> anyhow::Result<String> {
-    answers_of(command, model, windows, clock, state, |moments, state| {
-        command.text(moments, state)
-    })
+    answers_of(command, model, windows, clock, state, |moments, state| command.text(moments, state))
 }
 
 fn answers_of<T>(
@@ -116,9 +114,7 @@ fn answers_of<T>(
     if command.stream().tracks.are_live()
         && let Some(warning) = state.unfamiliar.warning()
     {
-        tell(format_args!(
-            "{warning}; this warning appears once, but each forecast has its familiarity"
-        ));
+        tell(format_args!("{warning}; this warning appears once, but each forecast has its familiarity"));
     }
     answers(&moments, state)
 }
@@ -139,10 +135,7 @@ pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
     let log = stream.output.as_deref().filter(|path| ddl_mcap::is_mcap(path));
     if stream.tracks.are_live() {
         if let Some(path) = log {
-            bail!(
-                "{}: MCAP is written from a file of tracks, not from standard input",
-                path.display()
-            );
+            bail!("{}: MCAP is written from a file of tracks, not from standard input", path.display());
         }
         return live::run(command);
     }

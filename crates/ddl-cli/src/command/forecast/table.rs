@@ -52,9 +52,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64], joint: 
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     if headed {
         let certified = moments.iter().any(|moment| moment.certified.is_some());
-        let columns = COLUMNS
-            .iter()
-            .chain(certified.then_some(&CERTIFIED).into_iter().flatten());
+        let columns = COLUMNS.iter().chain(certified.then_some(&CERTIFIED).into_iter().flatten());
         let named = moments.iter().any(|moment| moment.scene.is_some());
         let columns = named.then_some(&SCENE).into_iter().chain(columns);
         let named = |name: &'static str| if joint && name == HYPOTHESIS { "future" } else { name };

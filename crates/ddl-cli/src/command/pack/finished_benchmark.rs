@@ -89,9 +89,9 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
         settings.profile,
         settings.recipe.name,
         settings.epochs,
-        settings.train_pedestrians.map_or(String::new(), |pedestrians| format!(
-            ", {pedestrians} pedestrians per epoch"
-        )),
+        settings
+            .train_pedestrians
+            .map_or(String::new(), |pedestrians| format!(", {pedestrians} pedestrians per epoch")),
     );
     let full = || {
         let tasks = plan.tasks.iter();
@@ -101,12 +101,10 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
     let folds = settings.convention.fold_names();
     folds
         .map(|fold| {
-            full()
-                .find(|task| task.fold == fold && Some(task.seed) == seed)
-                .with_context(|| {
-                    let seed = seed.map_or(String::new(), |seed| format!(", seed {seed}"));
-                    format!("the benchmark has no run of fold {fold}, variant full{seed}; run it with all folds")
-                })
+            full().find(|task| task.fold == fold && Some(task.seed) == seed).with_context(|| {
+                let seed = seed.map_or(String::new(), |seed| format!(", seed {seed}"));
+                format!("the benchmark has no run of fold {fold}, variant full{seed}; run it with all folds")
+            })
         })
         .collect()
 }

@@ -12,12 +12,7 @@ pub(super) struct TrainingBars {
 
 impl TrainingBars {
     pub(super) fn new(mode: ProgressMode) -> Self {
-        Self {
-            mode,
-            goals: None,
-            network: None,
-            stood: "before its first step".to_owned(),
-        }
+        Self { mode, goals: None, network: None, stood: "before its first step".to_owned() }
     }
 
     pub(super) fn tell(&mut self, now: &TrainingProgress) {

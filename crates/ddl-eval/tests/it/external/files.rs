@@ -63,11 +63,7 @@ pub(crate) fn expected() -> Vec<Forecast> {
 pub(crate) fn rows(recording: &str, until: i64, pedestrian: i64, hypothesis: i64, weight: f64, x: f64) -> String {
     (1..=12).fold(String::new(), |mut text, t| {
         let frame = until + 10 * t;
-        writeln!(
-            text,
-            "{recording},{until},{pedestrian},{hypothesis},{weight},{frame},{x},0,ok"
-        )
-        .unwrap();
+        writeln!(text, "{recording},{until},{pedestrian},{hypothesis},{weight},{frame},{x},0,ok").unwrap();
         text
     })
 }

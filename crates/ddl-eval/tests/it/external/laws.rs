@@ -31,11 +31,7 @@ fn forecast_windows() -> impl Strategy<Value = (Vec<Window>, Vec<Forecast>)> {
             .into_iter()
             .enumerate()
             .map(|(index, n)| {
-                let name = if index % 2 == 0 {
-                    "yard"
-                } else {
-                    "a \"quoted\" ünusual name"
-                };
+                let name = if index % 2 == 0 { "yard" } else { "a \"quoted\" ünusual name" };
                 let from = (name, 6 * index as i64 - 9, 6);
                 let forecast = generated::forecast(n, k, with_goals, position());
                 (generated::window(from, n, position()), forecast)

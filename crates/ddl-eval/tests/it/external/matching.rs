@@ -17,16 +17,10 @@ use super::files::{
 fn every_format_says_the_same() {
     for (text, format) in [
         (whole(), ExternalFormat::JsonLines),
-        (
-            format!("\u{feff}\n{}", whole().replace('\n', "\r\n")),
-            ExternalFormat::JsonLines,
-        ),
+        (format!("\u{feff}\n{}", whole().replace('\n', "\r\n")), ExternalFormat::JsonLines),
         (table(), ExternalFormat::Table),
         (table().replace('\n', "\r"), ExternalFormat::Table),
-        (
-            table().replace("yard,", "\"yard\" ,").replace(",3,0,", ",3.0, 0 ,"),
-            ExternalFormat::Table,
-        ),
+        (table().replace("yard,", "\"yard\" ,").replace(",3,0,", ",3.0, 0 ,"), ExternalFormat::Table),
     ] {
         let matched = read(&text, format, Coverage::Whole).unwrap();
         assert_eq!(matched.forecasts, expected(), "{format:?}");
@@ -92,10 +86,7 @@ fn what_ddl_forecast_writes_beside_is_passed_over_and_goals_of_null_are_none() {
 fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
     let subset = |text: &str, coverage, named: Option<&str>| {
         let matched = read(text, ExternalFormat::JsonLines, coverage).unwrap();
-        let conditions = Conditions {
-            test_subset: named.map(str::to_owned),
-            ..conditions(Protocol::Fair)
-        };
+        let conditions = Conditions { test_subset: named.map(str::to_owned), ..conditions(Protocol::Fair) };
         let rows = external::measure(&conditions, &matched).unwrap();
         assert_eq!(rows[0].conditions.forecaster, "mine");
         let of_all = rows[1].conditions.test_subset.clone();
@@ -105,10 +96,7 @@ fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
     let two = line(70, 5, &hypothesis(2.0)) + &line(70, 4, &hypothesis(9.0));
     // The digests are of "yard", 70 and the pedestrian, computed with Python's hashlib.
     let (matched, rows, named) = subset(&two, Coverage::Intersection, None);
-    assert_eq!(
-        named,
-        "pedestrians forecast by another program: 1 of 3, digest f5c3a037"
-    );
+    assert_eq!(named, "pedestrians forecast by another program: 1 of 3, digest f5c3a037");
     let windows = &matched.windows;
     assert_eq!(windows.len(), 1);
     assert_eq!(windows[0].pedestrians(), [PedestrianId(5)]);
@@ -213,11 +201,7 @@ fn missing_forecasts_and_forecasts_without_a_pedestrian_are_counted_and_named() 
     for (until, pedestrian, expected) in [
         (10, 5, "if observed_until were the first frame of a window"),
         (90, 5, "if observed_until were the first frame forecast"),
-        (
-            700,
-            5,
-            "their frames run from 700 to 700, those of the windows from 70 to 80",
-        ),
+        (700, 5, "their frames run from 700 to 700, those of the windows from 70 to 80"),
         (70, 6, "another fold, data convention or window rule?"),
     ] {
         let text = line(until, pedestrian, &hypothesis(2.0));
@@ -227,11 +211,7 @@ fn missing_forecasts_and_forecasts_without_a_pedestrian_are_counted_and_named() 
     // If the other forecasts match, one that would match after a shift is no evidence against the frame.
     let among_others = hint(&line(90, 5, &hypothesis(2.0)));
     assert!(!among_others.contains("first frame forecast"));
-    let nothing = read(
-        &line(9, 9, &hypothesis(0.0)),
-        ExternalFormat::JsonLines,
-        Coverage::Intersection,
-    );
+    let nothing = read(&line(9, 9, &hypothesis(0.0)), ExternalFormat::JsonLines, Coverage::Intersection);
     assert!(matches!(nothing, Err(ExternalError::Unknown { .. })));
 }
 
@@ -273,14 +253,8 @@ fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
     };
     for (text, expected) in [
         (swapped, "if x and y were exchanged"),
-        (
-            file([0.4, 0.0], [0.5, 0.1], [0.3, 0.0]),
-            "relative to the last observed position",
-        ),
-        (
-            file([90.0, 0.0], [91.0, 0.0], [92.0, 0.0]),
-            "in metres, and of the same data convention",
-        ),
+        (file([0.4, 0.0], [0.5, 0.1], [0.3, 0.0]), "relative to the last observed position"),
+        (file([90.0, 0.0], [91.0, 0.0], [92.0, 0.0]), "in metres, and of the same data convention"),
     ] {
         let complaint = measure(&text).unwrap_err().to_string();
         assert!(complaint.contains(expected), "{complaint}");

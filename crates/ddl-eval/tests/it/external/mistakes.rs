@@ -53,11 +53,7 @@ fn every_mistake_of_several_hypotheses_is_named_with_its_place() {
     let format = ExternalFormat::JsonLines;
     let first = line(70, 3, &hypothesis(1.0));
     let twice = hypothesis(1.0) + "," + &hypothesis(2.0);
-    check(
-        format,
-        &(first + &line(70, 5, &twice)),
-        "2: 2 hypotheses, but 1 on line 1",
-    );
+    check(format, &(first + &line(70, 5, &twice)), "2: 2 hypotheses, but 1 on line 1");
     // Fields of two hypotheses. Some programs write a list of nulls for a goal of NaN, which is an error; a plain null
     // means no goal.
     check_all(format, "pairs of fields of JSON", |parts| {
@@ -84,9 +80,7 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
     ] {
         check(format, text, expected);
     }
-    check_all(format, "edits of a table", |parts| {
-        first.clone() + &edited(&second, parts[0], parts[1])
-    });
+    check_all(format, "edits of a table", |parts| first.clone() + &edited(&second, parts[0], parts[1]));
     // Pedestrian, hypothesis and weight of each row.
     let text_of = |sequence: &str| {
         let part = |part: &str| {
@@ -106,10 +100,7 @@ fn text_that_is_not_utf8_is_refused_at_its_line() {
     let mut bytes = whole().into_bytes();
     bytes.extend(b"\xff\xfe\n");
     let other: &[u8] = b"\n\xff";
-    for (format, text, line) in [
-        (ExternalFormat::JsonLines, &bytes[..], 4),
-        (ExternalFormat::Table, other, 2),
-    ] {
+    for (format, text, line) in [(ExternalFormat::JsonLines, &bytes[..], 4), (ExternalFormat::Table, other, 2)] {
         let error = external::read_from(text, "f", format, &windows(), Coverage::Whole);
         let expected = format!("f, line {line}: the text is not UTF-8");
         assert_eq!(error.unwrap_err().to_string(), expected);

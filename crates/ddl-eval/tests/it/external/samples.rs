@@ -108,26 +108,14 @@ fn files_that_do_not_fit_together_are_named() {
     let another: Edit = |text: &str| text.replace(" 5 ", " 9 ");
     // A changed copy of a sample, and the error.
     let cases: [(&str, Edit, &str); 7] = [
-        (
-            "70/sample_001.txt",
-            only_3,
-            "M/yard/frame_000070/sample_001.txt, line 1: pedestrian 5 is missing",
-        ),
+        ("70/sample_001.txt", only_3, "M/yard/frame_000070/sample_001.txt, line 1: pedestrian 5 is missing"),
         (
             "70/sample_001.txt",
             further,
             "M/yard/frame_000070/sample_001.txt, line 25, pedestrian: 8 is not in sample_000.txt",
         ),
-        (
-            "70/sample_001.txt",
-            same,
-            "M/yard/frame_000080: holds 1 samples, but M/yard/frame_000070 holds 2",
-        ),
-        (
-            "70/sample_002.txt",
-            same,
-            "M/yard/frame_000070: sample_001.txt is missing",
-        ),
+        ("70/sample_001.txt", same, "M/yard/frame_000080: holds 1 samples, but M/yard/frame_000070 holds 2"),
+        ("70/sample_002.txt", same, "M/yard/frame_000070: sample_001.txt is missing"),
         ("70/sample_000.txt", another, "M: 1 of 3 forecasts match no pedestrian"),
         ("90/sample_000.txt", same, "M: 2 of 5 forecasts match no pedestrian"),
         ("70/sample_000.txt", only_3, "M forecasts 2 of the 3 pedestrians"),

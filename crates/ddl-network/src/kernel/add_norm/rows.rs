@@ -74,11 +74,7 @@ impl Decisions {
     /// `None` if nothing is dropped.
     pub(in crate::kernel) fn new(dropout: Dropout) -> Option<Self> {
         let Threshold { least, scale } = dropout.threshold(24)?;
-        Some(Self {
-            seed: mixed(dropout.seed),
-            least: least << 8,
-            scale,
-        })
+        Some(Self { seed: mixed(dropout.seed), least: least << 8, scale })
     }
 
     #[inline(always)]

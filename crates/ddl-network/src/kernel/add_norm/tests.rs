@@ -30,12 +30,8 @@ impl Kernel for Both<'_> {
     fn run<S: Simd>(self, simd: S) {
         let results = self.results;
         let decisions = self.decisions.map(|decisions| (decisions, 5));
-        let mut normal = Normal {
-            numbers: &mut results.normal,
-            scales: &mut results.scales,
-        };
-        self.norm
-            .forward(simd, self.inputs, decisions, &mut normal, &mut results.y);
+        let mut normal = Normal { numbers: &mut results.normal, scales: &mut results.scales };
+        self.norm.forward(simd, self.inputs, decisions, &mut normal, &mut results.y);
         self.norm.backward(
             simd,
             [&results.normal, &results.scales],
@@ -104,9 +100,8 @@ impl NormCase {
             let variance = sums.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n;
             let deviation = (variance + 1e-5).sqrt();
             let normal: Vec<f64> = sums.iter().map(|s| (s - mean) / deviation).collect();
-            let g: Vec<f64> = (0..self.width)
-                .map(|i| f64::from(self.gy[first + i]) * f64::from(self.weight[i]))
-                .collect();
+            let g: Vec<f64> =
+                (0..self.width).map(|i| f64::from(self.gy[first + i]) * f64::from(self.weight[i])).collect();
             let g_mean = g.iter().sum::<f64>() / n;
             let along = g.iter().zip(&normal).map(|(g, x)| g * x).sum::<f64>() / n;
             for i in 0..self.width {

@@ -22,24 +22,14 @@ impl EncoderKernel {
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> (Buffer, Buffer) {
-        assert_eq!(
-            forward_results.normal2.numbers.len(),
-            gy.len(),
-            "numbers kept for the backward pass"
-        );
+        assert_eq!(forward_results.normal2.numbers.len(), gy.len(), "numbers kept for the backward pass");
         let [_, _, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces_mut(of_weights);
         let count = gy.len();
         let [mut of_z, mut of_fed, mut through] = [0; 3].map(|_| Buffer::any(count));
-        let second = Sublayer {
-            norm: &self.norm2,
-            map: None,
-            normal: &forward_results.normal2,
-            dropout: dropouts.fed,
-        };
+        let second = Sublayer { norm: &self.norm2, map: None, normal: &forward_results.normal2, dropout: dropouts.fed };
         self.sublayer_backward(&second, gy, [&mut of_z, &mut of_fed], [n2, c2, &mut [], &mut []]);
         let mut grads = Gradients { w1, b1, w2, b2 };
-        self.feed_forward
-            .backward(&forward_results.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
+        self.feed_forward.backward(&forward_results.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
         add_to(&mut of_z, &through);
         // The buffers are reused; their contents are no longer needed.
         let (mut gx, mut of_mixed) = (through, of_fed);

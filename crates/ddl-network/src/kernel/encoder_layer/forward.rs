@@ -25,9 +25,7 @@ impl EncoderKernel {
             projections,
             width,
             x,
-            targets: rest
-                .each_mut()
-                .map(|rest| rest.split_off_mut(..x.len()).unwrap_or_default()),
+            targets: rest.each_mut().map(|rest| rest.split_off_mut(..x.len()).unwrap_or_default()),
         });
         run_each(self.dispatch, jobs, x.len() * width * N);
         results
@@ -47,12 +45,7 @@ impl EncoderKernel {
         let normal1 = self.add_norm(norm1, Some(&self.out), [x, mixed], dropouts.attended, &mut z, keep);
         self.feed_forward.forward(&z, dropouts.hidden, &mut fed);
         let normal2 = self.add_norm(norm2, None, [&z, &fed], dropouts.fed, &mut y, keep);
-        let forward_results = ForwardResults {
-            attention,
-            normal1,
-            z,
-            normal2,
-        };
+        let forward_results = ForwardResults { attention, normal1, z, normal2 };
         (y, forward_results)
     }
 
@@ -84,10 +77,7 @@ impl EncoderKernel {
             x,
             t,
             decisions: decisions.map(|decisions| (decisions, i * ROWS)),
-            normal: Normal {
-                numbers: numbers.next().unwrap_or_default(),
-                scales: scales.next().unwrap_or_default(),
-            },
+            normal: Normal { numbers: numbers.next().unwrap_or_default(), scales: scales.next().unwrap_or_default() },
             y,
         });
         let work = x.len() * map.map_or(10, |_| width);
@@ -138,8 +128,7 @@ impl TiledKernel for NormForward<'_> {
             }
             None => self.t,
         };
-        self.norm
-            .forward(simd, [self.x, t], self.decisions, &mut self.normal, self.y);
+        self.norm.forward(simd, [self.x, t], self.decisions, &mut self.normal, self.y);
         drop(mapped);
     }
 }

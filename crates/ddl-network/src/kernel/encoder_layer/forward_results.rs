@@ -29,10 +29,7 @@ pub(crate) type CachedKeyValues = KeyValue<Buffer>;
 
 impl CachedKeyValues {
     pub(crate) fn zeros(count: usize) -> Self {
-        Self {
-            key: Buffer::zeros(count),
-            value: Buffer::zeros(count),
-        }
+        Self { key: Buffer::zeros(count), value: Buffer::zeros(count) }
     }
 
     pub(super) fn view(&self) -> KeyValue<&[f32]> {

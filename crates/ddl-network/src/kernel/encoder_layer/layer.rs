@@ -109,14 +109,12 @@ impl Sizes {
 
     pub(super) fn pieces(self, mut numbers: &[f32]) -> [&[f32]; PIECES] {
         self.check(numbers);
-        self.lengths()
-            .map(|length| numbers.split_off(..length).unwrap_or_default())
+        self.lengths().map(|length| numbers.split_off(..length).unwrap_or_default())
     }
 
     pub(super) fn pieces_mut(self, mut numbers: &mut [f32]) -> [&mut [f32]; PIECES] {
         self.check(numbers);
-        self.lengths()
-            .map(|length| numbers.split_off_mut(..length).unwrap_or_default())
+        self.lengths().map(|length| numbers.split_off_mut(..length).unwrap_or_default())
     }
 
     fn check(self, numbers: &[f32]) {

@@ -9,11 +9,7 @@ use ddl_simd::{Dispatch, InstructionSet};
 use rayon::ThreadPoolBuilder;
 
 fn star(hidden: usize) -> Sizes {
-    Sizes {
-        width: 32,
-        heads: 8,
-        hidden,
-    }
+    Sizes { width: 32, heads: 8, hidden }
 }
 
 struct LayerCase {
@@ -80,10 +76,11 @@ impl LayerCase {
     /// The keys and values of x are also a token of the cache.
     fn temporal(&self, layer: &EncoderKernel) -> Results {
         let mut cache = vec![layer.key_values(&self.x)];
-        cache.extend(self.cache.iter().map(|[key, value]| CachedKeyValues {
-            key: Buffer::copy(key),
-            value: Buffer::copy(value),
-        }));
+        cache.extend(
+            self.cache
+                .iter()
+                .map(|[key, value]| CachedKeyValues { key: Buffer::copy(key), value: Buffer::copy(value) }),
+        );
         let cache: Vec<&CachedKeyValues> = cache.iter().collect();
         let (y, forward_results) = layer.temporal_attention(&self.x, &cache, self.dropouts, true);
         let (alone, _) = layer.temporal_attention(&self.x, &cache, self.dropouts, false);
@@ -139,11 +136,7 @@ fn gradients_are_slopes() {
         let case = LayerCase::new(11, star(64), &scenes, p);
         let run = |case: &LayerCase| {
             let layer = case.layer(Dispatch::detect().instruction_set());
-            if over {
-                case.temporal(&layer)
-            } else {
-                case.spatial(&layer)
-            }
+            if over { case.temporal(&layer) } else { case.spatial(&layer) }
         };
         let [_, gx, of_weights, _] = run(&case);
         for (of_x, of_weights_too) in [(1.0, 0.0), (0.0, 1.0)] {

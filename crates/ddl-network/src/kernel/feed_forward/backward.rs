@@ -81,11 +81,7 @@ struct Scratch {
 
 impl Scratch {
     fn new(numbers: usize, width: usize) -> Self {
-        Self {
-            gx: Buffer::any(numbers),
-            w1: Buffer::any(BLOCK * width),
-            w2: Buffer::any(width * BLOCK),
-        }
+        Self { gx: Buffer::any(numbers), w1: Buffer::any(BLOCK * width), w2: Buffer::any(width * BLOCK) }
     }
 }
 
@@ -113,17 +109,12 @@ impl TiledKernel for UnitsBackward<'_, '_> {
             let (block, count) = (self.blocks + b, b1.len());
             w1.fill(0.0);
             w2.fill(0.0);
-            let pieces = self
-                .x
-                .chunks(ROWS_AT_ONCE * width)
-                .zip(self.gy.chunks(ROWS_AT_ONCE * width));
+            let pieces = self.x.chunks(ROWS_AT_ONCE * width).zip(self.gy.chunks(ROWS_AT_ONCE * width));
             let pieces = pieces.zip(gx.chunks_mut(ROWS_AT_ONCE * width));
             for (piece, ((x, gy), gx)) in pieces.enumerate() {
                 let rows = x.len() / width;
                 let (hidden, gradient) = (&mut hidden[..rows * BLOCK], &mut gradient[..rows * BLOCK]);
-                let decisions = self
-                    .decisions
-                    .map(|decisions| (decisions, self.first + piece * ROWS_AT_ONCE));
+                let decisions = self.decisions.map(|decisions| (decisions, self.first + piece * ROWS_AT_ONCE));
                 layer.activate::<S, R, V>(simd, block, x, decisions, hidden);
                 let gy = MatrixColumns::whole(gy, width);
                 let w2_of_block = layer.after.weight.block(block);
@@ -205,10 +196,7 @@ impl<N: DerefMut<Target = [f32]>> Gradients<N> {
         let size = units * BLOCK;
         let w1 = self.w1.chunks_mut(size * width);
         let b1 = self.b1.chunks_mut(size);
-        let mut parts: Vec<_> = w1
-            .zip(b1)
-            .map(|(w1, b1)| UnitGradients { w1, b1, w2: vec![] })
-            .collect();
+        let mut parts: Vec<_> = w1.zip(b1).map(|(w1, b1)| UnitGradients { w1, b1, w2: vec![] }).collect();
         for row in self.w2.chunks_exact_mut(hidden) {
             for (part, piece) in parts.iter_mut().zip(row.chunks_mut(size)) {
                 part.w2.push(piece);

@@ -20,11 +20,7 @@ impl UnitDecisions {
         let Threshold { least, scale } = dropout.threshold(16)?;
         // Consecutive seeds must not give the same bits to shifted rows.
         let seed = mixed(dropout.seed);
-        Some(Self {
-            least: least << 16,
-            scale,
-            rows: (0..rows as u64).map(|row| RowKey::new(seed, row)).collect(),
-        })
+        Some(Self { least: least << 16, scale, rows: (0..rows as u64).map(|row| RowKey::new(seed, row)).collect() })
     }
 
     /// Drops and scales the units of block `block` of the rows from `first`; `hidden` `[rows, 32]`.

@@ -56,17 +56,11 @@ impl TiledKernel for RowsForward<'_> {
         let (layer, width) = (self.layer, self.layer.width());
         let mut hidden = Buffer::any(ROWS_AT_ONCE * BLOCK);
         for block in 0..layer.units() {
-            let start = if block == 0 {
-                Start::Row(&layer.after.bias)
-            } else {
-                Start::There
-            };
+            let start = if block == 0 { Start::Row(&layer.after.bias) } else { Start::There };
             let pieces = self.x.chunks(ROWS_AT_ONCE * width);
             for (piece, (x, y)) in pieces.zip(self.y.chunks_mut(ROWS_AT_ONCE * width)).enumerate() {
                 let hidden = &mut hidden[..x.len() / width * BLOCK];
-                let decisions = self
-                    .decisions
-                    .map(|decisions| (decisions, self.first + piece * ROWS_AT_ONCE));
+                let decisions = self.decisions.map(|decisions| (decisions, self.first + piece * ROWS_AT_ONCE));
                 layer.activate::<S, R, V>(simd, block, x, decisions, hidden);
                 let count = layer.units_of(block);
                 multiply::<S, R, V>(

@@ -24,11 +24,7 @@ pub(crate) struct FeedForward {
 impl FeedForward {
     /// A block whose weights are all 0, of any width and hidden width.
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
-        Self {
-            before: Affine::new(width, hidden),
-            after: Affine::new(hidden, width),
-            dispatch: Dispatch::detect(),
-        }
+        Self { before: Affine::new(width, hidden), after: Affine::new(hidden, width), dispatch: Dispatch::detect() }
     }
 
     /// Replaces the weights: W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, row-major.
@@ -69,13 +65,7 @@ impl FeedForward {
         let x = MatrixColumns::whole(x, self.width());
         let start = Start::Row(&self.before.bias[2 * block..]);
         let mut columns = MatrixColumnsMut::whole(hidden, BLOCK);
-        multiply::<S, R, V>(
-            simd,
-            x,
-            self.before.transposed.block(block),
-            (start, End::Relu),
-            &mut columns,
-        );
+        multiply::<S, R, V>(simd, x, self.before.transposed.block(block), (start, End::Relu), &mut columns);
         if let Some((decisions, first)) = decisions {
             decisions.apply(simd, hidden, first, block);
         }

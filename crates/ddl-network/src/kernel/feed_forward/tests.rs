@@ -17,10 +17,7 @@ fn assert_near(name: &str, results: &[f32], exact: &[Sum], steps: usize) {
     for (i, (result, Sum { value, size, doubt })) in results.iter().zip(exact).enumerate() {
         let error = (f64::from(*result) - value).abs();
         let bound = steps as f64 * UNIT * size + doubt + 1e-37;
-        assert!(
-            error <= bound,
-            "{name}[{i}]: {result} for {value}, {error:e} > {bound:e}"
-        );
+        assert!(error <= bound, "{name}[{i}]: {result} for {value}, {error:e} > {bound:e}");
     }
 }
 
@@ -80,10 +77,7 @@ fn what_is_not_a_number_stays_in_its_row() {
 }
 
 fn dropouts() -> impl Strategy<Value = Option<Dropout>> {
-    prop_oneof![
-        Just(None),
-        (0.0..0.95, any::<u64>()).prop_map(|(p, seed)| Some(Dropout { p, seed })),
-    ]
+    prop_oneof![Just(None), (0.0..0.95, any::<u64>()).prop_map(|(p, seed)| Some(Dropout { p, seed })),]
 }
 
 proptest! {

@@ -93,10 +93,7 @@ impl Buffered<'_, SceneBackward<'_>> {
 /// For one key: the queries' weights times their sum, and the gradients of the scores.
 #[inline(always)]
 fn weigh<S: Simd, const DROP: bool>(simd: S, buffers: &mut SceneBuffers, task: &SceneTask<'_>, key: usize) {
-    let (keys, values) = (
-        simd.read_twice(&buffers.keys[key]),
-        simd.read_twice(&buffers.values[key]),
-    );
+    let (keys, values) = (simd.read_twice(&buffers.keys[key]), simd.read_twice(&buffers.values[key]));
     let codes = buffers.codes.chunks_exact(task.scene.pedestrians);
     let queries = buffers.queries.iter().zip(&buffers.mixed_gradients);
     let queries = queries.zip(buffers.inner.iter().zip(codes));

@@ -49,11 +49,7 @@ impl WeightDecisions {
     #[inline(always)]
     fn decide(&self, value: u32) -> f32 {
         // 24 bits are never negative, so a signed comparison is correct; all instruction sets have one.
-        if (value >> 8).cast_signed() >= self.least {
-            self.scale
-        } else {
-            0.0
-        }
+        if (value >> 8).cast_signed() >= self.least { self.scale } else { 0.0 }
     }
 }
 

@@ -37,11 +37,7 @@ impl SceneTask<'_> {
             let ends = lists.map(|seen| [seen[0].key(), seen[seen.len() - 1].key()]);
             let range = ends.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
             let [first, last] = range.unwrap_or_default();
-            Self {
-                twos,
-                keys: first..last + 1,
-                ..self.clone()
-            }
+            Self { twos, keys: first..last + 1, ..self.clone() }
         })
     }
 }

@@ -147,10 +147,7 @@ fn a_vanishing_weight_is_zero() {
     case.inputs = [[row(1.0); 2], keys, [row(3.0), row(100_f32.exp2())]].map(|rows| rows.concat());
     for set in InstructionSet::available() {
         let (mixed, _) = case.run(set);
-        assert!(
-            mixed.iter().all(|number| number.to_bits() == 3_f32.to_bits()),
-            "{set:?}: {mixed:?}"
-        );
+        assert!(mixed.iter().all(|number| number.to_bits() == 3_f32.to_bits()), "{set:?}: {mixed:?}");
     }
 }
 

@@ -40,10 +40,7 @@ impl TemporalBackward<'_> {
     /// gradient of the mixed values.
     #[inline(always)]
     fn group<S: Simd>(&mut self, simd: S, place: SixteenHeads, first: usize, [powers, taken]: &mut [Vec<Lanes>; 2]) {
-        let query = simd.scaled(
-            place.load(simd, self.query),
-            simd.splat(SCALE * std::f32::consts::LOG2_E),
-        );
+        let query = simd.scaled(place.load(simd, self.query), simd.splat(SCALE * std::f32::consts::LOG2_E));
         let mixed_gradient = place.load(simd, self.mixed_gradient);
         let share = soften(simd, place, query, self.cache, self.newest, powers, false);
         let mut mean = simd.splat(0.0);
@@ -64,11 +61,7 @@ impl TemporalBackward<'_> {
             // Undoes the scaling of the queries, which makes scores exponents of two.
             let key_weight = score_gradient * std::f32::consts::LN_2;
             place.add(simd, weighted(simd, key_weight, query), &mut gradients.key[first..]);
-            place.add(
-                simd,
-                weighted(simd, weight, mixed_gradient),
-                &mut gradients.value[first..],
-            );
+            place.add(simd, weighted(simd, weight, mixed_gradient), &mut gradients.value[first..]);
             query_gradient = accumulate(simd, query_gradient, score_gradient, place.load(simd, token.key));
         }
         let gradient = simd.scaled(query_gradient, simd.splat(SCALE));

@@ -50,20 +50,13 @@ impl SixteenHeads {
     /// The group at index `group` of a piece of `length` numbers that begins at `first` in the whole slice.
     #[inline(always)]
     pub(super) fn new(first: usize, group: usize, length: usize) -> Self {
-        Self {
-            first: first + group,
-            numbers: (length - group).min(GROUP_NUMBERS),
-        }
+        Self { first: first + group, numbers: (length - group).min(GROUP_NUMBERS) }
     }
 
     /// Loads the numbers; missing ones are 0. A slice that is too short is repeated.
     #[inline(always)]
     pub(super) fn load<S: Simd>(self, simd: S, from: &[f32]) -> Vectors<S> {
-        let first = if self.first < from.len() {
-            self.first
-        } else {
-            self.first % from.len()
-        };
+        let first = if self.first < from.len() { self.first } else { self.first % from.len() };
         if self.whole()
             && let Some(numbers) = from[first..].first_chunk()
         {

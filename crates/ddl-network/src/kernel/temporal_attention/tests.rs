@@ -32,10 +32,7 @@ impl TemporalCase {
     }
 
     fn cache(&self) -> Vec<KeyValue<&[f32]>> {
-        let [keys, values] = self
-            .tokens
-            .each_ref()
-            .map(|numbers| numbers.chunks_exact(self.query.len()));
+        let [keys, values] = self.tokens.each_ref().map(|numbers| numbers.chunks_exact(self.query.len()));
         keys.zip(values).map(|(key, value)| KeyValue { key, value }).collect()
     }
 

@@ -12,10 +12,7 @@ impl Decided {
         let deviation = (p * (1.0 - p)).sqrt();
         let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
         let value = |(row, column)| (f64::from(u8::from(dropped(row, column))) - p) / deviation;
-        Self {
-            values: places.map(value).collect(),
-            columns,
-        }
+        Self { values: places.map(value).collect(), columns }
     }
 
     /// The share is right in total, in every row and in every column, and neighbours are uncorrelated.

@@ -47,10 +47,7 @@ pub(crate) fn assert_close(what: &str, results: &[f32], expected: &[f64], tolera
     let largest = expected.iter().fold(1e-3_f64, |a, b| a.max(b.abs()));
     for (i, (result, expected)) in results.iter().zip(expected).enumerate() {
         let error = (f64::from(*result) - expected).abs() / largest;
-        assert!(
-            error <= tolerance,
-            "{what} {i}: {result} for {expected}, error {error:e} of the largest"
-        );
+        assert!(error <= tolerance, "{what} {i}: {result} for {expected}, error {error:e} of the largest");
     }
 }
 

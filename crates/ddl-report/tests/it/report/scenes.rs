@@ -11,17 +11,9 @@ fn whole_futures_have_tables_of_their_own() {
     let mut rows = five_folds(Protocol::Joint, 1, 0.25);
     for row in &mut rows {
         row.scores.categories = turning(10, 0.25);
-        let collisions = FutureCollisions {
-            mean: 0.25,
-            best: 0.125,
-            truth: 0.0625,
-        };
-        row.scores.joint = Some(JointScores {
-            ade_windows: 0.75,
-            fde_windows: 1.5,
-            collisions,
-            close_collisions: collisions,
-        });
+        let collisions = FutureCollisions { mean: 0.25, best: 0.125, truth: 0.0625 };
+        row.scores.joint =
+            Some(JointScores { ade_windows: 0.75, fde_windows: 1.5, collisions, close_collisions: collisions });
     }
     let fair = five_folds(Protocol::Fair, 1, 0.25);
     let page = markdown(fair.iter().cloned().chain(rows.clone()));

@@ -9,11 +9,7 @@ use super::{cells, five_folds, of_forecaster};
 #[test]
 fn a_summary_has_every_forecaster_once_under_each_protocol_with_other_errors() {
     let mut rows = Vec::new();
-    for (protocol, min_ade) in [
-        (Protocol::Fair, 0.25),
-        (Protocol::Single, 0.5),
-        (Protocol::Published, 0.125),
-    ] {
+    for (protocol, min_ade) in [(Protocol::Fair, 0.25), (Protocol::Single, 0.5), (Protocol::Published, 0.125)] {
         for seed in [1, 2] {
             let errors = five_folds(protocol, seed, min_ade * seed as f64);
             rows.extend(errors.clone());

@@ -27,19 +27,10 @@ fn a_tie_and_a_variation_of_the_same_model_are_no_victory() {
         verdict_of(rows)
     };
     for (others, said) in [
-        (
-            &[("other", 0.5)][..],
-            Some("It has the least error of the 2 forecasters"),
-        ),
+        (&[("other", 0.5)][..], Some("It has the least error of the 2 forecasters")),
         (&[("DDL as packed", 0.5)], None),
-        (
-            &[("DDL as packed", 0.5), ("other", 0.250_04)],
-            Some("it and other have the same error"),
-        ),
-        (
-            &[("DDL as packed", 0.125), ("other", 0.2)],
-            Some("other has the least error (0.200/0.400 m)"),
-        ),
+        (&[("DDL as packed", 0.5), ("other", 0.250_04)], Some("it and other have the same error")),
+        (&[("DDL as packed", 0.125), ("other", 0.2)], Some("other has the least error (0.200/0.400 m)")),
     ] {
         let verdict = verdict(others);
         assert_eq!(verdict.contains("error"), said.is_some(), "{verdict}");

@@ -23,10 +23,7 @@ enum Step {
 }
 
 fn tensor_step(p: &Tensor, goal: &Tensor, factor: &Tensor, step: Step) -> Tensor {
-    let constants = |time_step: f64| FlowConstants {
-        sigma: SIGMA,
-        time_step,
-    };
+    let constants = |time_step: f64| FlowConstants { sigma: SIGMA, time_step };
     match step {
         Step::Euler { dt } => natural_gradient_step(p, goal, factor, constants(dt)),
         Step::Bounded((bounds, absolute), time) => {
@@ -92,12 +89,7 @@ fn goal_and_pedestrian() -> impl Strategy<Value = ([f64; 2], [f64; 2])> {
     let distance = prop::sample::select(vec![None, Some(0.0), Some(1e-12), Some(1e-6)]);
     (place(), place(), distance, 0.0..std::f64::consts::TAU).prop_map(
         |(goal, anywhere, distance, direction): (_, _, Option<f64>, f64)| {
-            let near = |distance: f64| {
-                [
-                    goal[0] + distance * direction.cos(),
-                    goal[1] + distance * direction.sin(),
-                ]
-            };
+            let near = |distance: f64| [goal[0] + distance * direction.cos(), goal[1] + distance * direction.sin()];
             (goal, distance.map_or(anywhere, near))
         },
     )
@@ -119,9 +111,7 @@ fn gradients_of_a_chain(
     let (goals, starts): (Vec<[f64; 2]>, Vec<[f64; 2]>) = pedestrians.iter().copied().unzip();
     let starts = leaf(starts.as_flattened(), &[count, 2]);
     let factors = leaf(factors, &[HORIZON, count, 3]);
-    let goals = Tensor::from_slice(goals.as_flattened())
-        .reshape([count, 2])
-        .to_kind(kind);
+    let goals = Tensor::from_slice(goals.as_flattened()).reshape([count, 2]).to_kind(kind);
     let mut positions = starts.shallow_clone();
     let mut path = Vec::new();
     for t in 0..HORIZON {

@@ -14,14 +14,8 @@ use tch::Kind;
 fn scenes() -> [Vec<Window>; 3] {
     let dataset = Dataset::simulated(1);
     let windows = dataset.recordings()[0].windows(WindowRule::Complete);
-    let alone = Window::new(
-        "alone",
-        0,
-        10,
-        windows[0].pedestrians()[..1].to_vec(),
-        vec![windows[0].track(0).to_vec()],
-    )
-    .unwrap();
+    let alone = Window::new("alone", 0, 10, windows[0].pedestrians()[..1].to_vec(), vec![windows[0].track(0).to_vec()])
+        .unwrap();
     let some: Vec<Window> = windows.into_iter().step_by(9).take(4).collect();
     let many = some.iter().chain([&alone]).cloned().collect();
     [some, many, vec![alone]]
@@ -36,11 +30,7 @@ fn configs() -> Vec<StarConfig> {
     let goal_frame = [Variant::NoDynamics, Variant::Full].map(StarConfig::recommended);
     let world = Variant::ALL.map(StarConfig::published);
     let with = |config: StarConfig| {
-        BackboneKind::ALL.map(|backbone| StarConfig {
-            backbone,
-            feed_forward_width: 96,
-            ..config.clone()
-        })
+        BackboneKind::ALL.map(|backbone| StarConfig { backbone, feed_forward_width: 96, ..config.clone() })
     };
     world.into_iter().chain(goal_frame).flat_map(with).collect()
 }
@@ -105,13 +95,9 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
     let steps: Compared = (teacher_forced, [1e-5, 1e-4]);
     let walks: Compared = (walk, [1e-4, 5e-3]);
     for config in configs() {
-        for (windows, (loss, [of_loss, of_gradient])) in [
-            (&some, steps),
-            (&many, steps),
-            (&alone, steps),
-            (&some, walks),
-            (&many, walks),
-        ] {
+        for (windows, (loss, [of_loss, of_gradient])) in
+            [(&some, steps), (&many, steps), (&alone, steps), (&some, walks), (&many, walks)]
+        {
             let computed = |kind| gradient(&config, kind, |network, pass| loss(windows, network, pass));
             let (torch_loss, torch_gradient) = computed(Kind::Double);
             let (size, name) = (torch_gradient.norm().double_value(&[]), name(&config));
@@ -126,13 +112,7 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
 }
 
 /// The input of a forecast: windows, goals, noise, step rule, shares.
-type Question = (
-    Vec<Window>,
-    Vec<Vec<Vec<[f64; 2]>>>,
-    Noise,
-    StepRule,
-    Option<Vec<Vec<f64>>>,
-);
+type Question = (Vec<Window>, Vec<Vec<Vec<[f64; 2]>>>, Noise, StepRule, Option<Vec<Vec<f64>>>);
 
 /// Several goals or several noise vectors, with the whole metric or shares of it.
 fn questions(rule: StepRule) -> Vec<Question> {
@@ -148,9 +128,7 @@ fn questions(rule: StepRule) -> Vec<Question> {
             let goals = |window: &Window, i: usize| {
                 let [x, y] = window.track(i)[WINDOW - 1];
                 let wave = |k: u8| (f64::from(k) + i as f64).sin();
-                (0..count)
-                    .map(|k| [x + beyond + wave(2 * k), y - wave(2 * k + 1)])
-                    .collect()
+                (0..count).map(|k| [x + beyond + wave(2 * k), y - wave(2 * k + 1)]).collect()
             };
             let of_window =
                 |window: &Window| -> Vec<Vec<[f64; 2]>> { (0..window.len()).map(|i| goals(window, i)).collect() };

@@ -22,16 +22,10 @@ fn of_parts(star: &StarConfig, training: &TrainingConfig) -> Trainer {
 
 fn of_large_batches(star: &StarConfig, training: &TrainingConfig, (device, kind): (ComputeDevice, Kind)) -> Trainer {
     crate::set_threads(1);
-    let star = StarConfig {
-        feed_forward_width: 32,
-        ..star.clone()
-    };
+    let star = StarConfig { feed_forward_width: 32, ..star.clone() };
     let network = TorchNetwork::with_precision(star, 5, device, kind).unwrap();
     let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
-    let training = TrainingConfig {
-        batch_pedestrians: 3 * PART,
-        ..training.clone()
-    };
+    let training = TrainingConfig { batch_pedestrians: 3 * PART, ..training.clone() };
     Trainer::new(network, windows, None, training).unwrap()
 }
 
@@ -44,30 +38,17 @@ fn every_device_gives_the_same_gradients() {
     let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
     let published = (StarConfig::published(Variant::Full), TrainingConfig::published(), 1e-5);
     // Rounding grows over a walk of 12 steps.
-    let recommended = (
-        StarConfig::recommended(Variant::Full),
-        TrainingConfig::recommended(Variant::Full),
-        5e-3,
-    );
+    let recommended = (StarConfig::recommended(Variant::Full), TrainingConfig::recommended(Variant::Full), 5e-3);
     for (star, training, largest) in [published, recommended] {
-        let star = StarConfig {
-            spatial_dropout: 0.0,
-            ..star
-        };
-        let training = TrainingConfig {
-            jitter: 0.0,
-            ..training
-        };
+        let star = StarConfig { spatial_dropout: 0.0, ..star };
+        let training = TrainingConfig { jitter: 0.0, ..training };
         let gradient = |device: ComputeDevice, kind: Kind| {
             let mut trainer = of_large_batches(&star, &training, (device, kind));
             let parts = trainer.batches.batch(0, &trainer.schedule.batches[0]).unwrap();
             let sizes: Vec<usize> = parts.iter().map(|part| part.scenes.pedestrians()).collect();
             let by_kernels = (device, kind) == (cpu, Kind::Float);
             assert_eq!(sizes.len(), if by_kernels { 3 } else { 1 }, "{sizes:?}");
-            assert!(
-                sizes.iter().all(|&size| size.abs_diff(sizes[0]) < PART / 2),
-                "{sizes:?}"
-            );
+            assert!(sizes.iter().all(|&size| size.abs_diff(sizes[0]) < PART / 2), "{sizes:?}");
             let draw = StepDraw::new(0, &trainer.schedule, &trainer.config, &trainer.network).unwrap();
             // A card computes twice, then records the step and replays it.
             let visits = (0..4).map(|_| {
@@ -92,10 +73,9 @@ fn every_device_gives_the_same_gradients() {
 #[test]
 fn the_number_of_threads_changes_nothing() {
     let [published, recommended] = [StarConfig::published, StarConfig::recommended].map(|star| star(Variant::Full));
-    for (star, training) in [
-        (published, TrainingConfig::published()),
-        (recommended, TrainingConfig::recommended(Variant::Full)),
-    ] {
+    for (star, training) in
+        [(published, TrainingConfig::published()), (recommended, TrainingConfig::recommended(Variant::Full))]
+    {
         let after = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
@@ -115,17 +95,11 @@ fn the_number_of_threads_changes_nothing() {
 fn in_coordinates_of_maps_the_gradient_is_the_same() {
     let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
     let gradient = |by: Position| {
-        let star = StarConfig {
-            feed_forward_width: 32,
-            ..StarConfig::published(Variant::Full)
-        };
+        let star = StarConfig { feed_forward_width: 32, ..StarConfig::published(Variant::Full) };
         let network = TorchNetwork::with_precision(star, 5, cpu, Kind::Float).unwrap();
         let moved = |place: Position| [place[0] + by[0], place[1] + by[1]];
         let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
-        let windows: Vec<Window> = windows
-            .iter()
-            .map(|window| window.map_positions(|_, _, at| moved(at)))
-            .collect();
+        let windows: Vec<Window> = windows.iter().map(|window| window.map_positions(|_, _, at| moved(at))).collect();
         let end = |window: &Window| (0..window.len()).map(|i| window.future(i)[11]).collect();
         let goals = windows.iter().map(end).collect();
         let mut trainer = Trainer::new(network, windows, Some(goals), TrainingConfig::published()).unwrap();

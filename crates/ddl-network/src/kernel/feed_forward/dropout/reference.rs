@@ -16,11 +16,7 @@ fn bits(seed: u64, row: usize, unit: usize) -> u32 {
 /// The factor of a unit: 0 if it is dropped, otherwise 1 / (1 - p).
 pub(crate) fn factor(dropout: Dropout, row: usize, unit: usize) -> f64 {
     let dropped = (dropout.p * 65_536.0).round().min(65_535.0);
-    if f64::from(bits(dropout.seed, row, unit)) < dropped {
-        0.0
-    } else {
-        65_536.0 / (65_536.0 - dropped)
-    }
+    if f64::from(bits(dropout.seed, row, unit)) < dropped { 0.0 } else { 65_536.0 / (65_536.0 - dropped) }
 }
 
 #[test]
@@ -42,9 +38,7 @@ fn decisions_stay_what_they_are() {
 fn decisions_are_like_chance_and_seeds_decide_apart() {
     let decided = |p: f64, seed| {
         let rounded = (p * 65_536.0).round() / 65_536.0;
-        Decided::new(rounded, [500, 2048], |row, unit| {
-            factor(Dropout { p, seed }, row, unit) == 0.0
-        })
+        Decided::new(rounded, [500, 2048], |row, unit| factor(Dropout { p, seed }, row, unit) == 0.0)
     };
     for p in [0.1, 0.5, 0.9] {
         decided(p, 1).assert_like_chance();

@@ -72,8 +72,7 @@ impl Case {
 
     /// The factor of a unit: 0 if it is dropped, otherwise 1 / (1 - p).
     pub(super) fn factor(&self, row: usize, unit: usize) -> f64 {
-        self.dropout
-            .map_or(1.0, |dropout| reference::factor(dropout, row, unit))
+        self.dropout.map_or(1.0, |dropout| reference::factor(dropout, row, unit))
     }
 
     /// y, and the gradients of x, W1, b1, W2, b2.
