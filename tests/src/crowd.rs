@@ -1,6 +1,7 @@
 //! The simulated crowds for the tests: test windows of one scene, experts from the others.
 
-use ddl_data::{Dataset, TIME_STEP, Window, WindowRule};
+use ddl_core::{TIME_STEP, Window};
+use ddl_data::{Dataset, WindowRule};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 use std::sync::OnceLock;
 

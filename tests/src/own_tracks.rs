@@ -1,7 +1,8 @@
 //! Tracks like those of a user of the program, as CSV.
 
 use crate::crowd;
-use ddl_data::{PedestrianId, Position, Recording};
+use ddl_core::{PedestrianId, Position};
+use ddl_data::Recording;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 

@@ -15,6 +15,9 @@ pub const WINDOW: usize = OBSERVED + HORIZON;
 /// Limit of frame numbers: exact in an `f64`, and far from overflow in sums.
 pub const FRAME_LIMIT: i64 = 1 << 53;
 
+/// Largest coordinate (m) accepted from files and streams; UTM coordinates reach 10,000 km.
+pub const COORDINATE_LIMIT: f64 = 1e7;
+
 /// Whether a raw frame number is below [`FRAME_LIMIT`] in size.
 pub fn is_frame(frame: i64) -> bool {
     frame.unsigned_abs() < FRAME_LIMIT.unsigned_abs()

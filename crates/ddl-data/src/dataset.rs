@@ -55,7 +55,8 @@ impl Dataset {
     ///
     /// # Examples
     /// ```
-    /// use ddl_data::{Dataset, Observation, PedestrianId, Recording, WindowRule};
+    /// use ddl_core::PedestrianId;
+    /// use ddl_data::{Dataset, Observation, Recording, WindowRule};
     ///
     /// let walk = |name: &str| {
     ///     let seen = (0..25).map(|t| Observation::new(t, PedestrianId(1), [0.5 * t as f64, 0.0]));

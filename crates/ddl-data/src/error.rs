@@ -2,11 +2,10 @@
 
 use std::path::PathBuf;
 
-use ddl_core::{PedestrianId, Position, is_frame};
+use ddl_core::{COORDINATE_LIMIT, PedestrianId, Position, is_frame};
 use thiserror::Error;
 
 use crate::clock::ClockError;
-use crate::observation::COORDINATE_LIMIT;
 
 /// A file of tracks cannot be read: the file, the line, the field and the problem.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

@@ -22,7 +22,8 @@ impl Recording {
     /// The true paths. A forecaster must not see them.
     ///
     /// ```
-    /// use ddl_data::{LiveTracks, Observation, PedestrianId, Recording};
+    /// use ddl_core::PedestrianId;
+    /// use ddl_data::{LiveTracks, Observation, Recording};
     ///
     /// let walk = (0..10).map(|t| Observation::new(10 * t, PedestrianId(1), [t as f64, 0.0])).collect();
     /// let recording = Recording::new("yard", 10, walk)?;

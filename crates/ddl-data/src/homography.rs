@@ -1,10 +1,10 @@
 //! Conversion from pixels of a camera to metres on the ground.
 
-use ddl_core::{PedestrianName, PedestrianNames, Position};
+use ddl_core::{COORDINATE_LIMIT, PedestrianName, PedestrianNames, Position};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::observation::{COORDINATE_LIMIT, Observation};
+use crate::observation::Observation;
 use crate::recording::Recording;
 
 const SIZE: usize = 3;

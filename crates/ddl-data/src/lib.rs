@@ -67,8 +67,6 @@
 //! [`Fold::training_split`] keeps the last part of each training recording for validation. With the fraction 0.2 the
 //! windows are those of the published folders `train` and `val` of Social-GAN.
 
-mod atomic_file;
-mod augment;
 mod clock;
 mod convention;
 mod dataset;
@@ -87,36 +85,27 @@ mod replay;
 mod rule;
 mod scene_name;
 mod simulate;
-mod spatial_index;
 mod summary;
 mod windows;
 
-pub use atomic_file::{remove_temporary_files, write_atomically, write_atomically_with};
-pub use augment::Rotation;
 pub use clock::{Clock, ClockError, FrameNumber, TimeUnit};
 pub use convention::Convention;
 pub use dataset::Dataset;
-pub use ddl_core::distance;
-pub use ddl_core::{
-    FRAME_LIMIT, HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, PedestrianNames, Position,
-    RememberedTrack, TIME_STEP, WINDOW, Window, WindowError, between,
-};
 pub use error::{DataError, FormatError, LiveError, RecordingError};
 pub use fold::{Fold, TrainingSplit};
 pub use format::{
-    ColumnChoice, Format, Frame, FrameReader, Numbering, escaped, is_vehicle, parse_columns, parse_recording,
-    read_recording, write_recording,
+    ColumnChoice, Format, Frame, FrameReader, escaped, is_vehicle, parse_columns, parse_recording, read_recording,
+    write_recording,
 };
 pub use future::Futures;
 pub use homography::{Homography, HomographyError};
 pub use live::{Completeness, LiveTracks, checked_frame};
 pub use locate::locate;
-pub use observation::{COORDINATE_LIMIT, Observation};
+pub use observation::Observation;
 pub use observe::{Misfit, MisfitTreatment, RecordingNoise};
 pub use plausibility::{Fastest, PlausibilityWarning};
 pub use recording::Recording;
 pub use replay::ObservedRecording;
 pub use rule::WindowRule;
 pub use scene_name::SceneName;
-pub use spatial_index::SpatialIndex;
 pub use summary::{Gap, Summary};

@@ -52,7 +52,8 @@ impl Completeness {
 /// - After a frame far ahead, earlier frames are refused; [`clear`](Self::clear) starts again.
 ///
 /// ```
-/// use ddl_data::{LiveTracks, PedestrianId};
+/// use ddl_core::PedestrianId;
+/// use ddl_data::LiveTracks;
 ///
 /// let mut tracks = LiveTracks::new(); // frames are counted: 0, 1, 2, ..
 /// for frame in 0..7 {

@@ -3,9 +3,6 @@
 use ddl_core::{PedestrianId, Position};
 use serde::{Deserialize, Serialize};
 
-/// Largest coordinate (m) accepted from files and streams; UTM coordinates reach 10,000 km.
-pub const COORDINATE_LIMIT: f64 = 1e7;
-
 /// Position of one pedestrian at one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Observation {

@@ -14,7 +14,8 @@ use crate::recording::Recording;
 /// Summary of a recording, in steps of 0.4 s.
 ///
 /// ```
-/// use ddl_data::{Observation, PedestrianId, Recording};
+/// use ddl_core::PedestrianId;
+/// use ddl_data::{Observation, Recording};
 ///
 /// let walk = (0..20).map(|t| Observation::new(10 * t, PedestrianId(1), [0.5 * t as f64, 2.0]));
 /// let summary = Recording::new("yard", 10, walk.collect())?.summary();

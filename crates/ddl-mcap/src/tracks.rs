@@ -4,10 +4,8 @@ use crate::decode::{Decoded, READ, decode, type_name};
 use crate::error::LogError;
 use crate::files::files;
 use crate::messages::Messages;
-use ddl_core::{FRAME_LIMIT, PedestrianId};
-use ddl_data::{
-    COORDINATE_LIMIT, LiveError, LiveTracks, Numbering, Observation, Recording, RecordingError, TimeUnit, escaped,
-};
+use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, Numbering, PedestrianId};
+use ddl_data::{LiveError, LiveTracks, Observation, Recording, RecordingError, TimeUnit, escaped};
 use mcap::Channel;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -7,7 +7,8 @@ use std::fs::File;
 use std::io::{ErrorKind, Read as _};
 use std::path::Path;
 
-use ddl_data::{PedestrianId, checked_frame, write_atomically};
+use ddl_core::{PedestrianId, write_atomically};
+use ddl_data::checked_frame;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 

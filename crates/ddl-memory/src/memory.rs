@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use ddl_data::{Clock, LiveError, PedestrianId, Position, checked_frame};
+use ddl_core::{PedestrianId, Position};
+use ddl_data::{Clock, LiveError, checked_frame};
 use serde::{Deserialize, Serialize};
 
 use crate::error::MemoryError;
@@ -34,7 +35,7 @@ const OLDEST: usize = 8;
 /// - The same frames give the same memory, for any order of the pedestrians within a frame.
 ///
 /// ```
-/// use ddl_data::PedestrianId;
+/// use ddl_core::PedestrianId;
 /// use ddl_memory::SceneMemory;
 ///
 /// let mut memory = SceneMemory::new(10, SceneMemory::DEFAULT_CAPACITY)?; // 25 frames per second

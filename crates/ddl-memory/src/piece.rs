@@ -1,6 +1,6 @@
 //! A piece: up to 8 consecutive segments (20 positions each) of one track, all compared with a pedestrian at once.
 
-use ddl_data::{COORDINATE_LIMIT, OBSERVED, Position, TIME_STEP, WINDOW};
+use ddl_core::{COORDINATE_LIMIT, OBSERVED, Position, TIME_STEP, WINDOW};
 use serde::{Deserialize, Serialize, Serializer};
 
 /// Segments compared at once, so that the loop over them is vectorised.

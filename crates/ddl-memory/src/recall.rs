@@ -1,6 +1,6 @@
 //! Recall of earlier pedestrians with a similar motion.
 
-use ddl_data::{OBSERVED, PedestrianId, Position, RememberedTrack};
+use ddl_core::{OBSERVED, PedestrianId, Position, RememberedTrack};
 
 use crate::memory::SceneMemory;
 use crate::piece::{FirstMotion, Piece};

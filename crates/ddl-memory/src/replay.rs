@@ -1,6 +1,7 @@
 //! Replay of a recording: its windows, each with the tracks that the memory recalls at that time.
 
-use ddl_data::{OBSERVED, Recording, Window};
+use ddl_core::{OBSERVED, Window};
+use ddl_data::Recording;
 
 use crate::error::MemoryError;
 use crate::memory::SceneMemory;

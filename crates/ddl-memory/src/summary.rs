@@ -1,6 +1,6 @@
 //! Summary of a scene memory.
 
-use ddl_data::{Position, TIME_STEP};
+use ddl_core::{Position, TIME_STEP};
 
 use crate::memory::SceneMemory;
 use crate::track::Track;

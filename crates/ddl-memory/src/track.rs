@@ -1,6 +1,6 @@
 //! The segments of one pedestrian, and the running track of a pedestrian that may be seen again.
 
-use ddl_data::{Position, between};
+use ddl_core::{Position, between};
 use serde::{Deserialize, Serialize};
 
 use crate::piece::{FirstMotion, Piece, SHARED, is_remembered};

@@ -2,8 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ddl_core::Forecast;
-use ddl_data::Window;
+use ddl_core::{Forecast, Window};
 use ddl_eval::EvaluationError;
 
 use crate::snapshot::ForecastSnapshot;

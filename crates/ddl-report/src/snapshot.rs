@@ -1,7 +1,8 @@
 //! One window of a recording with its forecast (a snapshot), as data for galleries and the player.
 
-use ddl_core::{Forecast, average_displacement, medoid};
-use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position, Window};
+use ddl_core::{
+    Forecast, HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position, Window, average_displacement, medoid,
+};
 use ddl_eval::metric::stability::RolloutStability;
 use ddl_eval::{EvaluationError, ScoredWindow};
 use serde::{Deserialize, Serialize};

@@ -3,8 +3,7 @@
 use crate::cdr::{Message, read};
 use crate::error::RosError;
 use crate::msg::{Detection3DArray, Header, People, Point, TrackedPersons};
-use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position, is_frame};
-use ddl_data::{COORDINATE_LIMIT, Numbering};
+use ddl_core::{COORDINATE_LIMIT, Numbering, PedestrianId, PedestrianName, PedestrianNames, Position, is_frame};
 use std::collections::BTreeMap;
 
 /// The pedestrians of one message.

@@ -1,7 +1,8 @@
 //! Messages hold the numbers of forecasts and of trackers at their places (`reference/messages.py`).
 
-use ddl_core::{Forecast, ObservationQuality, Pace, PedestrianId, PedestrianNames, RegionTable, Spread, Window};
-use ddl_data::Numbering;
+use ddl_core::{
+    Forecast, Numbering, ObservationQuality, Pace, PedestrianId, PedestrianNames, RegionTable, Spread, Window,
+};
 use ddl_ros::msg::{Detection3DArray, Header, People, Time, TrackedPersons};
 use ddl_ros::{Message, Moment, Observed, RosError, occupancy_grid, read, read_tracks, write};
 use ddl_scene::{Area, Occupancy};

@@ -1,7 +1,6 @@
 //! Who walks together.
 
-use ddl_core::{OBSERVED, Position, TIME_STEP, Window, distance};
-use ddl_data::SpatialIndex;
+use ddl_core::{OBSERVED, Position, SpatialIndex, TIME_STEP, Window, distance};
 use std::collections::BTreeMap;
 
 /// Mean distance over the observation below which two may walk together, metres.

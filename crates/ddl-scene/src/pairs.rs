@@ -2,8 +2,7 @@
 
 use crate::energy::{Energy, PairEnergy};
 use crate::hypotheses::Hypotheses;
-use ddl_core::{HORIZON, Position, distance};
-use ddl_data::SpatialIndex;
+use ddl_core::{HORIZON, Position, SpatialIndex, distance};
 use std::collections::BTreeSet;
 
 /// Number of nearest pedestrians with which each forms pairs, so that pairs grow in proportion to people. One

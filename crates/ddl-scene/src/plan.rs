@@ -1,8 +1,7 @@
 //! The plan of a robot, or of anybody whose path is known.
 
 use crate::error::PlanError;
-use ddl_core::{HORIZON, Position, TIME_STEP, between};
-use ddl_data::COORDINATE_LIMIT;
+use ddl_core::{COORDINATE_LIMIT, HORIZON, Position, TIME_STEP, between};
 
 /// A row of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]

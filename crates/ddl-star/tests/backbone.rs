@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_data::{Dataset, OBSERVED, Window, WindowRule};
+use ddl_core::{OBSERVED, Window};
+use ddl_data::{Dataset, WindowRule};
 use ddl_network::backbone::{Backbone, output_layer};
 use ddl_network::backend::{Backend, Memory};
 use ddl_network::weights::{EncoderLayer, Layout, Linear, Sizes, Weights};

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_data::RememberedTrack;
+use ddl_core::RememberedTrack;
 use ddl_network::weights::Origin;
 use ddl_network::{
     DeviceChoice, MemoryTraining, NetworkError, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,

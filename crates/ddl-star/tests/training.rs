@@ -2,7 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_data::{Dataset, Window, WindowRule};
+use ddl_core::Window;
+use ddl_data::{Dataset, WindowRule};
 use ddl_network::weights::Origin;
 use ddl_network::{DeviceChoice, LearningRateSchedule, NetworkError, StarConfig, TrainingConfig, Variant};
 use ddl_star::{ComputeDevice, StarError, TorchNetwork, Trainer};

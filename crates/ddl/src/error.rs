@@ -108,7 +108,7 @@ pub enum DdlError {
 
 /// Frames per second, from the number of frames in a step of 0.4 s.
 fn rate(frame_step: i64) -> f64 {
-    frame_step as f64 / ddl_data::TIME_STEP
+    frame_step as f64 / ddl_core::TIME_STEP
 }
 
 /// Advice for a validation part without windows, given the number of recordings.

@@ -34,7 +34,6 @@ mod trust;
 #[cfg(any(feature = "report", feature = "torch"))]
 mod windows;
 
-pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;
 #[cfg(feature = "report")]
 pub use ddl_eval as eval;
@@ -87,6 +86,16 @@ pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
 #[cfg(any(feature = "report", feature = "torch"))]
 pub use windows::test_set::{Split, test_set_name};
+
+/// Tracks and windows: the types of `ddl-core`, and the recordings and streams of `ddl-data`.
+pub mod data {
+    pub use ddl_core::{
+        COORDINATE_LIMIT, FRAME_LIMIT, HORIZON, Numbering, OBSERVED, ObservationQuality, PedestrianId, PedestrianName,
+        PedestrianNames, Position, RememberedTrack, TIME_STEP, WINDOW, Window, WindowError, between, distance,
+        remove_temporary_files, write_atomically, write_atomically_with,
+    };
+    pub use ddl_data::*;
+}
 
 /// What the feature `report` adds.
 #[cfg(feature = "report")]

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use super::valid_file::names_file;
-use ddl_data::{PedestrianId, Window};
+use ddl_core::{PedestrianId, Window};
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 
 /// Two windows of one recording: pedestrian 7 alone, then pedestrians 7 and 8.
@@ -35,7 +35,7 @@ pub(super) fn check(bytes: &[u8], format: ExternalFormat) {
     for forecast in &matched.forecasts {
         for (i, k) in (0..forecast.pedestrians()).flat_map(|i| (0..forecast.hypotheses()).map(move |k| (i, k))) {
             let path = forecast.hypothesis(i, k).as_flattened();
-            assert!(path.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT), "{path:?}");
+            assert!(path.iter().all(|c| c.abs() <= ddl_core::COORDINATE_LIMIT), "{path:?}");
         }
     }
     let mut written = Vec::new();

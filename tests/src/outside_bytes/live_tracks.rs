@@ -1,6 +1,7 @@
 //! Frames with arbitrary numbers, pushed as by a program.
 
-use ddl_data::{Completeness, LiveTracks, PedestrianId, Position};
+use ddl_core::{PedestrianId, Position};
+use ddl_data::{Completeness, LiveTracks};
 
 use super::edits::{below, byte};
 use arbitrary::Unstructured;

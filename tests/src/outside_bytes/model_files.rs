@@ -11,7 +11,7 @@ use arbitrary::Unstructured;
 use ddl::network::weights::{Origin, Weights, in_hex, load_weights, save_weights};
 use ddl::network::{ForecastWindows as _, MemoryConfig, MotionNetwork, ProposalConfig, StarConfig};
 use ddl::{Ddl, DeviceChoice, GoalModel, GoalRecipe, ModelSource, RunConfig, RunDirectory, Variant};
-use ddl_data::{PedestrianId, Window};
+use ddl_core::{PedestrianId, Window};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 use std::path::Path;

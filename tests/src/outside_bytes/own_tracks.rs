@@ -1,6 +1,7 @@
 //! A user's own tracks, as in `ddl forecast`: format guessed, rate given, windows cut.
 
-use ddl_data::{COORDINATE_LIMIT, Clock, Completeness, Format, OBSERVED, Recording, WindowRule, parse_recording};
+use ddl_core::{COORDINATE_LIMIT, OBSERVED};
+use ddl_data::{Clock, Completeness, Format, Recording, WindowRule, parse_recording};
 
 use super::tracks::bounded;
 

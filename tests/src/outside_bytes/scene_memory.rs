@@ -2,7 +2,7 @@
 
 use super::valid_file::ValidFile;
 use ddl::network::weights::in_hex;
-use ddl_data::{OBSERVED, PedestrianId, Position};
+use ddl_core::{OBSERVED, PedestrianId, Position};
 use ddl_memory::{MemoryError, SceneMemory};
 use sha2::{Digest as _, Sha256};
 

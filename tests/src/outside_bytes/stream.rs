@@ -21,7 +21,7 @@ pub(super) fn read(bytes: &[u8]) {
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");
         assert_eq!(frame.is_first, last.is_none());
         let pedestrians = || frame.pedestrians.iter().copied();
-        assert!(pedestrians().all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT)));
+        assert!(pedestrians().all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_core::COORDINATE_LIMIT)));
         let window = tracks.push(frame.number, pedestrians()).expect("frames from the reader can be pushed");
         assert_eq!(window, tracks.window());
         let before = tracks.clone();

@@ -2,7 +2,8 @@
 //! unchanged.
 
 use super::valid_file::names_file;
-use ddl_data::{Format, Observation, Position, Recording, parse_recording, write_recording};
+use ddl_core::Position;
+use ddl_data::{Format, Observation, Recording, parse_recording, write_recording};
 
 /// Reads a file of tracks in a format.
 pub(super) fn check(bytes: &[u8], format: Format) {
@@ -30,7 +31,7 @@ pub(super) fn check(bytes: &[u8], format: Format) {
 /// The bounds that callers of the readers rely on.
 pub(super) fn bounded(recording: &Recording) {
     for seen in recording.observations() {
-        let is_near = |position: Position| position.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT);
+        let is_near = |position: Position| position.iter().all(|c| c.abs() <= ddl_core::COORDINATE_LIMIT);
         assert!(is_near(seen.position), "{seen:?} is beyond the coordinate limit");
         assert!(seen.frame.unsigned_abs() < 1 << 53, "{seen:?}");
     }

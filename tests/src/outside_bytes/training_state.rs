@@ -6,7 +6,7 @@ use ddl::DeviceChoice;
 use ddl::network::weights::Origin;
 use ddl::network::{Objective, TrainingConfig};
 use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
-use ddl_data::{PedestrianId, Window};
+use ddl_core::{PedestrianId, Window};
 
 use super::model_files::{smallest_config, without_digest};
 use super::valid_file::ValidFile;

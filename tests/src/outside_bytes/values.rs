@@ -1,7 +1,8 @@
 //! Values of a few lines: results (`report.json`, `moments.json`), the homography of a camera, and the goal
 //! estimator's parameters as JSON.
 
-use ddl_data::{Homography, Observation, PedestrianId, PedestrianNames};
+use ddl_core::{PedestrianId, PedestrianNames};
+use ddl_data::{Homography, Observation};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 use ddl_report::{ForecastSnapshot, Report, page::Page};
 use serde::Serialize;
@@ -51,7 +52,7 @@ pub(super) fn homography(bytes: &[u8]) {
     for pixel in PIXELS {
         let seen = Observation::new(0, PedestrianId(1), pixel);
         if let Ok(place) = homography.place(&seen, &PedestrianNames::default()) {
-            let is_near = place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT);
+            let is_near = place.iter().all(|c| c.abs() <= ddl_core::COORDINATE_LIMIT);
             assert!(is_near, "{pixel:?}: {place:?}");
         }
     }

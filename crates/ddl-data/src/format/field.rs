@@ -2,13 +2,12 @@
 
 use std::borrow::Cow;
 
-use ddl_core::{FRAME_LIMIT, PedestrianName, is_frame};
+use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, PedestrianName, is_frame};
 use time::format_description::well_known::Iso8601;
 use time::{OffsetDateTime, PrimitiveDateTime};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::format::problem::{not_a_time, not_finite, not_integer};
-use crate::observation::COORDINATE_LIMIT;
 
 /// Longest piece of a file that an error message quotes, in characters.
 const QUOTED: usize = 40;

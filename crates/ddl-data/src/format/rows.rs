@@ -2,12 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ddl_core::{PedestrianId, PedestrianNames, Position};
+use ddl_core::{Numbering, PedestrianId, PedestrianNames, Position};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::error::DataError;
 use crate::format::field::PedestrianField;
-use crate::format::numbering::Numbering;
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate};
 use crate::observation::Observation;

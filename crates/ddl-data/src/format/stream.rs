@@ -7,7 +7,7 @@ use std::io::{BufRead, Read as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position};
+use ddl_core::{Numbering, PedestrianId, PedestrianName, PedestrianNames, Position};
 
 use crate::clock::TimeUnit;
 use crate::error::{DataError, FormatError};
@@ -15,7 +15,6 @@ use crate::format::choice::ColumnChoice;
 use crate::format::comments::{is_comment, rate_of};
 use crate::format::field::PedestrianField;
 use crate::format::kind::Format;
-use crate::format::numbering::Numbering;
 use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::{MIXED_TIMES, NOT_UTF8, duplicate, when};
 use crate::format::rows::TrackRow;

@@ -1,8 +1,7 @@
 //! Clocks: how frame numbers and times count, and how they print back.
 
-use ddl_data::{
-    Clock, ClockError, Format, FrameReader, LiveTracks, Observation, PedestrianId, Recording, TimeUnit, parse_recording,
-};
+use ddl_core::PedestrianId;
+use ddl_data::{Clock, ClockError, Format, FrameReader, LiveTracks, Observation, Recording, TimeUnit, parse_recording};
 use proptest::prelude::*;
 
 /// By hand: 12 frames a second are 4.8 in a step, 4 are 1.6, 1 is 0.4.

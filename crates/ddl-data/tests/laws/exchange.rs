@@ -1,6 +1,7 @@
 //! Exchanges of ids.
 
-use ddl_data::{Clock, MisfitTreatment, Observation, PedestrianId};
+use ddl_core::PedestrianId;
+use ddl_data::{Clock, MisfitTreatment, Observation};
 use proptest::prelude::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeSet;
 
-use ddl_data::{Convention, Dataset, Recording, Window, WindowRule};
+use ddl_core::Window;
+use ddl_data::{Convention, Dataset, Recording, WindowRule};
 
 use crate::recordings;
 

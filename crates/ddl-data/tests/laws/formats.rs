@@ -1,6 +1,7 @@
 //! Files as people have them: their columns in any order, under any of the usual names, and formats of others.
 
-use ddl_data::{ColumnChoice, Format, FrameReader, Observation, PedestrianId, Recording, parse_columns};
+use ddl_core::PedestrianId;
+use ddl_data::{ColumnChoice, Format, FrameReader, Observation, Recording, parse_columns};
 use proptest::prelude::*;
 use std::path::Path;
 

@@ -4,9 +4,10 @@ use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write as _;
 use std::time::Duration;
 
+use ddl_core::{PedestrianId, Position};
 use ddl_data::{
-    Convention, DataError, Format, Frame, FrameReader, Observation, PedestrianId, Position, Recording, SceneName,
-    parse_recording, write_recording,
+    Convention, DataError, Format, Frame, FrameReader, Observation, Recording, SceneName, parse_recording,
+    write_recording,
 };
 use proptest::prelude::*;
 

@@ -1,6 +1,7 @@
 //! Tracks fed frame by frame: refused frames, and forgotten pedestrians.
 
-use ddl_data::{ClockError, LiveError, LiveTracks, Observation, PedestrianId, Recording, RecordingError};
+use ddl_core::PedestrianId;
+use ddl_data::{ClockError, LiveError, LiveTracks, Observation, Recording, RecordingError};
 
 #[test]
 fn errors_change_nothing() {

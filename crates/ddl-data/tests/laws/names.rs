@@ -1,6 +1,7 @@
 //! Pedestrians named by words in files and streams.
 
-use ddl_data::{Completeness, Format, FrameReader, PedestrianId, PedestrianName, parse_recording};
+use ddl_core::{PedestrianId, PedestrianName};
+use ddl_data::{Completeness, Format, FrameReader, parse_recording};
 
 type Row = fn(i64, &str) -> String;
 

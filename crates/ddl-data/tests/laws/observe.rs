@@ -3,11 +3,10 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use ddl_core::distance;
+use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, Position, TIME_STEP, Window, distance};
 use ddl_data::{
-    Clock, Completeness, Convention, Dataset, Format, FrameReader, LiveTracks, Misfit, MisfitTreatment, OBSERVED,
-    Observation, ObservationQuality, ObservedRecording, PedestrianId, Position, Recording, TIME_STEP, Window,
-    WindowRule, parse_recording,
+    Clock, Completeness, Convention, Dataset, Format, FrameReader, LiveTracks, Misfit, MisfitTreatment, Observation,
+    ObservedRecording, Recording, WindowRule, parse_recording,
 };
 use proptest::prelude::*;
 use rand::SeedableRng as _;

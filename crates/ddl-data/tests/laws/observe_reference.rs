@@ -1,7 +1,8 @@
 //! Films of pedestrians with wrong rows, jumps, gaps and exchanged numbers, observed by a second program:
 //! `reference/observed_tracks.py`.
 
-use ddl_data::{Clock, Completeness, MisfitTreatment, OBSERVED, Observation, PedestrianId, Window, WindowRule};
+use ddl_core::{OBSERVED, PedestrianId, Window};
+use ddl_data::{Clock, Completeness, MisfitTreatment, Observation, WindowRule};
 use serde::Deserialize;
 
 use crate::observe::recording;

@@ -1,6 +1,7 @@
 //! Readers of files without mistakes, and of binary ones.
 
-use ddl_data::{Format, Observation, PedestrianId, parse_recording};
+use ddl_core::PedestrianId;
+use ddl_data::{Format, Observation, parse_recording};
 
 pub(crate) fn complaint(text: impl AsRef<[u8]>, format: Format) -> String {
     parse_recording(text.as_ref(), "f", format).unwrap_err().to_string()

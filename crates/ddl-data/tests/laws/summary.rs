@@ -1,6 +1,7 @@
 //! Summaries of recordings and their plausibility checks.
 
-use ddl_data::{Format, Observation, PedestrianId, PlausibilityWarning, Position, Recording, parse_recording};
+use ddl_core::{PedestrianId, Position};
+use ddl_data::{Format, Observation, PlausibilityWarning, Recording, parse_recording};
 
 /// A pedestrian that walks along x at a speed in metres per frame, for 100 frames.
 fn walk(metres_a_frame: f64) -> Vec<Observation> {

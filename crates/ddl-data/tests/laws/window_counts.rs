@@ -1,6 +1,7 @@
 //! Window counts of the real recordings, against numbers computed outside this project.
 
-use ddl_data::{Convention, OBSERVED, Recording, SpatialIndex, Window, WindowRule};
+use ddl_core::{OBSERVED, SpatialIndex, Window};
+use ddl_data::{Convention, Recording, WindowRule};
 use serde_json::{Map, Value};
 
 use crate::recordings;

@@ -1,6 +1,7 @@
 //! Laws of windows, neighbours and rotations, on made-up recordings.
 
-use ddl_data::{Observation, PedestrianId, Position, Recording, Rotation, SpatialIndex, WindowRule};
+use ddl_core::{PedestrianId, Position, Rotation, SpatialIndex};
+use ddl_data::{Observation, Recording, WindowRule};
 use proptest::prelude::*;
 
 const RULES: [WindowRule; 4] = [

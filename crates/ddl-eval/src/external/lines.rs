@@ -2,8 +2,7 @@
 
 use std::io::{BufRead, Read as _};
 
-use ddl_core::{FRAME_LIMIT, HORIZON, Position};
-use ddl_data::COORDINATE_LIMIT;
+use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, HORIZON, Position};
 
 use crate::external::error::ExternalError;
 

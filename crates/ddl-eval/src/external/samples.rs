@@ -18,8 +18,8 @@ use std::fs::{self, File};
 use std::io::{BufReader, Error, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
-use ddl_core::{Forecast, HORIZON, OBSERVED, PedestrianName, Position, Window};
-use ddl_data::{Convention, write_atomically};
+use ddl_core::{Forecast, HORIZON, OBSERVED, PedestrianName, Position, Window, write_atomically};
+use ddl_data::Convention;
 
 use crate::error::EvaluationError;
 use crate::external::error::ExternalError;

@@ -1,7 +1,6 @@
 //! Strategies for windows and forecasts.
 
-use ddl_core::Forecast;
-use ddl_data::{HORIZON, PedestrianId, Position, WINDOW, Window};
+use ddl_core::{Forecast, HORIZON, PedestrianId, Position, WINDOW, Window};
 use proptest::{collection::vec, prelude::*};
 
 /// Positions up to 20 m from the origin, along each axis.

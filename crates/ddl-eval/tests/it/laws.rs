@@ -1,7 +1,7 @@
 //! Properties of the metrics, for any forecast.
 
-use ddl_core::{Forecast, distance};
-use ddl_data::{Convention, PedestrianId, Position, Rotation, WINDOW, Window, WindowRule};
+use ddl_core::{Forecast, PedestrianId, Position, Rotation, WINDOW, Window, distance};
+use ddl_data::{Convention, WindowRule};
 use ddl_eval::baseline::SocialForce;
 use ddl_eval::metric::collision::closest_approach;
 use ddl_eval::{Conditions, EvaluationError, MotionKind, Protocol, ResultRow, Scores, WindowProblem};

@@ -1,7 +1,7 @@
 //! All metrics of windows of 1 to 5 pedestrians among others, as `tests/reference/scores.py` computes them.
 
-use ddl_core::{Forecast, Pace, RegionTable, Spread};
-use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
+use ddl_core::{Forecast, Pace, PedestrianId, Position, RegionTable, Spread, Window};
+use ddl_data::{Convention, WindowRule};
 use ddl_eval::significance::block_errors;
 use ddl_eval::{CategoryScores, Conditions, Protocol, RecordingErrors, ResultRow, Scores, baseline};
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use ddl_data::{Convention, Dataset, Recording, Window, WindowRule, locate};
+use ddl_core::Window;
+use ddl_data::{Convention, Dataset, Recording, WindowRule, locate};
 use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use serde::Deserialize;
 

@@ -1,7 +1,7 @@
 //! A crowd that crosses a square of 20 m. A new pedestrian replaces each one that leaves.
 #![allow(unreachable_pub, reason = "a module of several tests")]
 
-use ddl_data::{PedestrianId, Position};
+use ddl_core::{PedestrianId, Position};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 

@@ -1,7 +1,7 @@
 //! A full memory never exceeds its capacity, and keeps the newest tracks.
 
 use crate::{crowd::Crowd, memory_of, queries};
-use ddl_data::{OBSERVED, PedestrianId, Position};
+use ddl_core::{OBSERVED, PedestrianId, Position};
 use ddl_memory::SceneMemory;
 use proptest::prelude::*;
 

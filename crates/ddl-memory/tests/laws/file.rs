@@ -114,7 +114,7 @@ fn impossible_memories_are_refused() {
     } // A row between two steps: 3 after the step at frame 20.
     let mut memory = SceneMemory::new(10, 20).unwrap();
     for frame in [10, 20, 23] {
-        memory.observe(frame, [(ddl_data::PedestrianId(1), [0.1 * frame as f64, 0.0])]).unwrap();
+        memory.observe(frame, [(ddl_core::PedestrianId(1), [0.1 * frame as f64, 0.0])]).unwrap();
     }
     memory.write(&path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();

@@ -10,7 +10,7 @@ mod recall;
 mod refused;
 
 use crowd::{Crowd, Pedestrians};
-use ddl_data::{OBSERVED, PedestrianId, Position};
+use ddl_core::{OBSERVED, PedestrianId, Position};
 use ddl_memory::SceneMemory;
 use proptest::prelude::*;
 

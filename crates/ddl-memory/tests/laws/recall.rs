@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::{Frames, memory_of, queries, step_of};
-use ddl_data::{OBSERVED, PedestrianId, Position, RememberedTrack, WINDOW};
+use ddl_core::{OBSERVED, PedestrianId, Position, RememberedTrack, WINDOW};
 use ddl_memory::SceneMemory;
 use proptest::prelude::*;
 
@@ -24,7 +24,7 @@ fn segments(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Segment>)> {
             if let Some(&before) = track.get(last).filter(|_| frame - *last <= 3 * step) {
                 for due in (*last + step..*frame).step_by(step as usize) {
                     let share = (due - *last) as f64 / (frame - *last) as f64;
-                    track.insert(due, ddl_data::between(before, *position, share));
+                    track.insert(due, ddl_core::between(before, *position, share));
                 }
             }
             track.insert(*frame, *position);

@@ -1,6 +1,7 @@
 //! Refused input leaves the memory unchanged.
 
-use ddl_data::{LiveTracks, PedestrianId};
+use ddl_core::PedestrianId;
+use ddl_data::LiveTracks;
 use ddl_memory::{MemoryError, SceneMemory};
 
 #[test]

@@ -5,7 +5,7 @@ use crate::backbone::features::{Backbone, output_layer};
 use crate::backend::{Backend, Memory};
 use crate::config::NetworkFrame;
 use crate::weights::{Layout, Linear};
-use ddl_data::OBSERVED;
+use ddl_core::OBSERVED;
 
 /// The backbone without a Transformer: two hidden layers on the present and observed positions of the pedestrian.
 #[derive(Debug, Clone)]

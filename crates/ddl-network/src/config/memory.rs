@@ -2,7 +2,7 @@
 
 use crate::NetworkError;
 use crate::config::range::{not_negative, positive, require};
-use ddl_data::RememberedTrack;
+use ddl_core::RememberedTrack;
 use serde::{Deserialize, Serialize};
 
 /// Sizes of the memory branch: attention over earlier pedestrians of the place, and a separate readout. Its endpoints

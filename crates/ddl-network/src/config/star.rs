@@ -97,7 +97,7 @@ impl StarConfig {
             spatial_dropout: 0.1,
             neighbour_box: 10.0,
             sigma: ddl_dynamics::PUBLISHED_SIGMA,
-            time_step: ddl_data::TIME_STEP,
+            time_step: ddl_core::TIME_STEP,
         }
     }
 

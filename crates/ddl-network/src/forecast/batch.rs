@@ -3,7 +3,7 @@
 use crate::NetworkError;
 use crate::forecast::rollout::{Noise, StepRule, WindowRollout};
 use crate::seed::{Stage, stream};
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_core::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;

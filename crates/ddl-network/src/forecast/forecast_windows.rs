@@ -4,7 +4,7 @@ use crate::forecast::batch::{BatchRollout, CrowdOrder, ForecastBatch, batches};
 use crate::forecast::rollout::{Noise, StepRule, WindowRollout};
 use crate::weights::Weights;
 use crate::{NetworkError, StarConfig};
-use ddl_data::{Position, Window};
+use ddl_core::{Position, Window};
 use std::fmt::Debug;
 
 /// A forecasting network: kernels on the CPU, or libtorch in `ddl-star`.

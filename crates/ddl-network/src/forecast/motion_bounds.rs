@@ -1,7 +1,7 @@
 //! The bounds of a pedestrian's motion from its observed positions: its top speed and its present velocity.
 
+use ddl_core::Position;
 use ddl_core::motion::{JITTER, RECENT_STEPS};
-use ddl_data::Position;
 use ddl_dynamics::MotionBounds;
 use nalgebra::Vector2;
 

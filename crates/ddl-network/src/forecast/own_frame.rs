@@ -5,9 +5,8 @@
 //! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: about 1 m up to walking speed, and
 //! about v / (2 m/s) metres far above it.
 
-use ddl_core::mean_speed;
 use ddl_core::motion::FAST_WALK;
-use ddl_data::Position;
+use ddl_core::{Position, mean_speed};
 
 /// Closer to its goal than this (metres), a pedestrian's frame has the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;

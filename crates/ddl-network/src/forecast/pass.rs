@@ -5,7 +5,7 @@ use crate::forecast::batch::{BatchRollout, ForecastBatch};
 use crate::forecast::network::MotionNetwork;
 use crate::forecast::rollout_state::{ObservedSteps, RolloutState};
 use crate::kernel::KeepBuffers;
-use ddl_data::{HORIZON, OBSERVED};
+use ddl_core::{HORIZON, OBSERVED};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::rc::Rc;

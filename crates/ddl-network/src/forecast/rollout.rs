@@ -1,6 +1,6 @@
 //! Settings and result of a rollout.
 
-use ddl_data::Position;
+use ddl_core::Position;
 use serde::{Deserialize, Serialize};
 
 /// The noise input of the output layer.

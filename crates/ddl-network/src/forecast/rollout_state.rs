@@ -11,7 +11,7 @@ use crate::forecast::one_step::{around, next};
 use crate::forecast::own_frame::{OwnFrame, length_unit};
 use crate::forecast::rollout::StepRule;
 use crate::forecast::visibility::visibility;
-use ddl_data::{OBSERVED, Position, Window};
+use ddl_core::{OBSERVED, Position, Window};
 use ddl_dynamics::{MotionBounds, StepTime};
 use ddl_simd::Dispatch;
 use std::ops::Range;

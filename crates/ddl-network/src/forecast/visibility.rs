@@ -1,7 +1,7 @@
 //! Visibility masks: which pedestrians attend to which.
 
 use crate::backend::Scenes;
-use ddl_data::{Position, SpatialIndex, Window};
+use ddl_core::{Position, SpatialIndex, Window};
 use rayon::prelude::*;
 
 /// Least pedestrians in the part of a thread.

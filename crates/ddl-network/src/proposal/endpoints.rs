@@ -2,7 +2,7 @@
 
 use crate::weights::Weights;
 use crate::{NetworkError, ProposalConfig};
-use ddl_data::{HORIZON, OBSERVED, Position, RememberedTrack};
+use ddl_core::{HORIZON, OBSERVED, Position, RememberedTrack};
 use std::fmt::Debug;
 
 /// Unit of length of the last layer (m). Endpoints are within a few metres of the extrapolation of the present

@@ -4,7 +4,7 @@ use crate::ProposalConfig;
 use crate::proposal::remembered::REMEMBERED_FEATURES;
 use crate::proposal::seen::NEIGHBOUR_FEATURES;
 use crate::weights::Layout;
-use ddl_data::OBSERVED;
+use ddl_core::OBSERVED;
 use std::ops::Range;
 
 /// Waypoints, the positions that are trained in addition to the endpoint, as shares of the horizon.

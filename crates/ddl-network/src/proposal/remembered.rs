@@ -4,7 +4,7 @@ use crate::MemoryConfig;
 use crate::proposal::endpoints::{ENDPOINT_UNIT, PedestrianView};
 use crate::proposal::seen::{OthersRows, velocity};
 use ddl_core::motion::RECENT_STEPS;
-use ddl_data::{HORIZON, OBSERVED, WINDOW};
+use ddl_core::{HORIZON, OBSERVED, WINDOW};
 
 /// Number of inputs for an earlier pedestrian: 7 vectors and the [similarities](SIMILARITY_SCALES). Six vectors are
 /// relative to the pedestrian: present position, late and early velocity, displacement to the endpoint, endpoint, and

@@ -3,7 +3,7 @@
 use crate::ProposalConfig;
 use crate::proposal::endpoints::PedestrianView;
 use ddl_core::motion::RECENT_STEPS;
-use ddl_data::{HORIZON, OBSERVED, Position};
+use ddl_core::{HORIZON, OBSERVED, Position};
 
 /// Number of inputs for a neighbour: direction (2), two measures of nearness, relative velocity (2), velocity (2),
 /// closing speed.

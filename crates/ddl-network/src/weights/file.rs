@@ -5,7 +5,7 @@ use crate::weights::digest::{check_digest, tensors_digest};
 use crate::weights::layout::Layout;
 use crate::weights::learned::Weights;
 use crate::weights::origin::Origin;
-use ddl_data::write_atomically;
+use ddl_core::write_atomically;
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
 use std::io::Read as _;

@@ -1,7 +1,7 @@
 //! Bounded rollouts end on the goal within the top speed, and a rollout's factors reproduce its steps.
 
 use super::scenes::{Question, WINDOWS, configs, distance, goals};
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_core::{HORIZON, OBSERVED, Position, Window};
 use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout};
 use ddl_network::{ForecastWindows as _, MotionNetwork, NetworkFrame, Noise, StarConfig, StepRule, motion_bounds};
 use nalgebra::Vector2;

@@ -1,7 +1,7 @@
 //! Forecasts of STAR depend on the other pedestrians, those of the perceptron do not.
 
 use super::scenes::{Question, WINDOWS, distance, recommended};
-use ddl_data::{HORIZON, Window};
+use ddl_core::{HORIZON, Window};
 use ddl_network::{BackboneKind, MotionNetwork, Variant};
 
 /// Largest distance (m) between the forecasts of a pedestrian with others and alone: of the first pedestrian of each

@@ -1,7 +1,7 @@
 //! Forecasts are equivariant to translations and, in the pedestrian's own frame, to rotations.
 
 use super::scenes::{WINDOWS, configs, distance, goals, recommended};
-use ddl_data::{Position, Window};
+use ddl_core::{Position, Window};
 use ddl_network::{BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule, Variant};
 use proptest::prelude::*;
 use proptest::sample::Index;

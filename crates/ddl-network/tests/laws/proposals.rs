@@ -1,7 +1,7 @@
 //! Proposals: shape, probabilities and dependence on the inputs.
 
 use super::scenes::{WINDOWS, distance, with_threads};
-use ddl_data::{OBSERVED, Position, RememberedTrack, WINDOW, Window};
+use ddl_core::{OBSERVED, Position, RememberedTrack, WINDOW, Window};
 use ddl_network::{PedestrianView, ProposalConfig, ProposalNetwork, ProposeEndpoints as _, ProposedEndpoints};
 use proptest::prelude::*;
 use proptest::sample::Index;

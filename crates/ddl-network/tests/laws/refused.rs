@@ -1,7 +1,7 @@
 //! Typed errors for invalid inputs and configurations.
 
 use super::scenes::{WINDOWS, goals};
-use ddl_data::{Position, Window};
+use ddl_core::{Position, Window};
 use ddl_network::{
     ForecastWindows as _, MotionNetwork, NetworkError, NetworkFrame, Noise, ProposalConfig, ProposalNetwork,
     ProposalTraining, StarConfig, StepRule, TrainingConfig, Variant,

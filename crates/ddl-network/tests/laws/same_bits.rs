@@ -1,7 +1,7 @@
 //! The forecast of a window has the same bits alone and together with other windows, with any number of threads.
 
 use super::scenes::{Question, WINDOWS, configs, with_threads};
-use ddl_data::Window;
+use ddl_core::Window;
 use ddl_network::{MotionNetwork, Noise, StepRule, WindowRollout};
 use proptest::prelude::*;
 use proptest::sample::Index;

@@ -1,7 +1,8 @@
 //! Simulated windows, their goals, and untrained networks.
 
 pub(crate) use ddl_core::distance;
-use ddl_data::{Dataset, PedestrianId, Position, Window, WindowRule};
+use ddl_core::{PedestrianId, Position, Window};
+use ddl_data::{Dataset, WindowRule};
 use ddl_network::{
     BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
 };

@@ -1,7 +1,6 @@
 //! The frame of a plot in metres, with its grid and numbers.
 
-use ddl_core::bounds;
-use ddl_data::Position;
+use ddl_core::{Position, bounds};
 
 use crate::figure::drawing::Drawing;
 use crate::figure::plan::PlanView;

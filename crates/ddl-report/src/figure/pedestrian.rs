@@ -1,6 +1,6 @@
 //! Draws the observed track and the forecast of one pedestrian, in the same way in every picture.
 
-use ddl_data::{OBSERVED, Position};
+use ddl_core::{OBSERVED, Position};
 
 use crate::figure::drawing::Drawing;
 use crate::figure::marks::star;

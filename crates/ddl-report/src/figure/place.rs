@@ -1,6 +1,6 @@
 //! A map of a place: the density of tracks, and where tracks begin and end.
 
-use ddl_data::Position;
+use ddl_core::Position;
 
 use crate::figure::axes::{Axes, PLACE};
 use crate::figure::cut::cut;

@@ -1,6 +1,6 @@
 //! Ground coordinates to pixels: one scale for both axes, y up.
 
-use ddl_data::Position;
+use ddl_core::Position;
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlanView {

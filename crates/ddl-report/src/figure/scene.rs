@@ -1,7 +1,6 @@
 //! One scene: the past, future and forecast of every pedestrian.
 
-use ddl_core::{Disc, Forecast};
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_core::{Disc, Forecast, HORIZON, OBSERVED, Position, Window};
 
 use crate::error::ReportError;
 use crate::figure::axes::{Axes, SCENE};

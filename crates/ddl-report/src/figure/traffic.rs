@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_data::Position;
+use ddl_core::Position;
 
 /// Two positions farther apart (m) are not joined: the track has a gap between them.
 const LONGEST_STEP: f64 = 1.5;

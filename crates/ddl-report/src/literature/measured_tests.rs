@@ -1,7 +1,7 @@
 //! The baselines of `ddl-eval` on the real recordings agree with the reference values in `literature.json`.
 
-use ddl_core::Forecaster;
-use ddl_data::{Convention, Dataset, Window, WindowRule, locate};
+use ddl_core::{Forecaster, Window};
+use ddl_data::{Convention, Dataset, WindowRule, locate};
 use ddl_eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint};
 use ddl_eval::{Conditions, Protocol, ResultRow};
 

@@ -1,6 +1,6 @@
 //! Whether moments are whole: they may come from a file.
 
-use ddl_data::{COORDINATE_LIMIT, HORIZON, OBSERVED, Position};
+use ddl_core::{COORDINATE_LIMIT, HORIZON, OBSERVED, Position};
 
 use crate::error::ReportError;
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};

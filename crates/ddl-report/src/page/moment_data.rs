@@ -17,7 +17,7 @@
 //!
 //! Positions of moments are whole millimetres, so the encoding is exact: `x / 1000` is the original number.
 
-use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position};
+use ddl_core::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position};
 use serde::Serialize;
 
 use crate::error::ReportError;

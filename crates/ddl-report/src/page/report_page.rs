@@ -1,6 +1,6 @@
 //! The HTML page of a report.
 
-use ddl_data::HORIZON;
+use ddl_core::HORIZON;
 use maud::{Markup, html};
 
 use crate::document::{ContentsEntry, inline};

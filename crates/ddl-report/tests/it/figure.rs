@@ -1,7 +1,6 @@
 //! The content of pictures of scenes.
 
-use ddl_core::Forecaster;
-use ddl_data::{PedestrianId, Window};
+use ddl_core::{Forecaster, PedestrianId, Window};
 use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint};
 use ddl_report::figure;
 

@@ -1,7 +1,7 @@
 //! The content and the errors of the report page. `tests/page/check_page.py` tests it in a browser.
 
-use ddl_core::Forecast;
-use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
+use ddl_core::{Forecast, PedestrianId, Position, Window};
+use ddl_data::{Convention, WindowRule};
 use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 use ddl_report::{
     ForecastSnapshot, Report,

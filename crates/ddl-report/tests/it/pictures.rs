@@ -4,8 +4,7 @@
 
 use std::path::Path;
 
-use ddl_core::{Forecast, HORIZON, Pace, Position, RegionTable, Spread};
-use ddl_data::{PedestrianId, Window};
+use ddl_core::{Forecast, HORIZON, Pace, PedestrianId, Position, RegionTable, Spread, Window};
 use ddl_report::page::Page;
 use ddl_report::{Report, figure};
 

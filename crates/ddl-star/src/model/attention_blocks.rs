@@ -139,7 +139,7 @@ mod tests {
 
     use super::*;
     use crate::model::attention::spatial_attention;
-    use ddl_data::{OBSERVED, PedestrianId, Position, Window};
+    use ddl_core::{OBSERVED, PedestrianId, Position, Window};
     use proptest::prelude::*;
 
     /// A crowd of pedestrians that stand at these places.

@@ -4,7 +4,7 @@ use crate::StarError;
 use crate::model::attention_blocks::AttentionBlocks;
 use crate::model::numbers::tensor;
 use crate::model::scene_rows::SceneRows;
-use ddl_data::Window;
+use ddl_core::Window;
 use ddl_network::backend::Scenes;
 use ddl_network::{NetworkError, visibility};
 use std::ops::Range;

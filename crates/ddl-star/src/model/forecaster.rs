@@ -8,7 +8,7 @@ use crate::model::network::TorchNetwork;
 use crate::model::numbers::{arrays, tensor};
 use crate::model::rollout::Rollout;
 use crate::model::tensor_backend::Engine;
-use ddl_data::{OBSERVED, Window};
+use ddl_core::{OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
 use ddl_network::{BatchRollout, CrowdOrder, ForecastBatch, ForecastWindows, NetworkError, StarConfig};

@@ -2,7 +2,7 @@
 //! [unit](ddl_network::length_unit).
 
 use crate::model::own_motion;
-use ddl_data::OBSERVED;
+use ddl_core::OBSERVED;
 use tch::Tensor;
 
 /// Closer to its goal than this (metres), a pedestrian uses the axes of the world.

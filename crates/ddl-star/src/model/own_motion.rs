@@ -45,7 +45,7 @@ pub(crate) fn velocities(observed: &Tensor, time_step: f64) -> Tensor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ddl_data::Position;
+    use ddl_core::Position;
     use ddl_network::{length_unit, motion_bounds};
     use proptest::prelude::*;
 

@@ -6,7 +6,7 @@
 use crate::device::ComputeDevice;
 use crate::model::{Engine, NoiseInput, TorchBackend, TorchNetwork, WindowBatch};
 use crate::training::mean_squared_distance;
-use ddl_data::{PedestrianId, Window};
+use ddl_core::{PedestrianId, Window};
 use ddl_network::backend::Mode;
 use ddl_network::{DeviceChoice, StarConfig, StepRule, Variant};
 use serde_json::Value;

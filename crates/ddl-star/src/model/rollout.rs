@@ -8,7 +8,7 @@ use crate::model::guidance::Guidance;
 use crate::model::network::Layers;
 use crate::model::own_motion;
 use crate::model::tensor_backend::{Engine, TensorBackend};
-use ddl_data::{HORIZON, OBSERVED};
+use ddl_core::{HORIZON, OBSERVED};
 use ddl_network::backbone::Backbone;
 use ddl_network::backend::Memory;
 use ddl_network::{NetworkFrame, StepRule};

@@ -2,7 +2,7 @@
 
 use crate::StarError;
 use crate::model::tensor;
-use ddl_data::{OBSERVED, WINDOW};
+use ddl_core::{OBSERVED, WINDOW};
 use ddl_network::{PedestrianView, ProposalConfig};
 use tch::{Device, Kind, Tensor};
 

@@ -2,7 +2,7 @@
 //! all).
 
 use crate::proposal::network::Proposals;
-use ddl_data::HORIZON;
+use ddl_core::HORIZON;
 use ddl_network::proposal::WAYPOINTS;
 use tch::{Kind, Tensor};
 

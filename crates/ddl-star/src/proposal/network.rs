@@ -5,7 +5,7 @@ use crate::device::ComputeDevice;
 use crate::model::{Parameters, arrays};
 use crate::proposal::data::Views;
 use ddl_core::motion::RECENT_STEPS;
-use ddl_data::{HORIZON, OBSERVED, Position, WINDOW};
+use ddl_core::{HORIZON, OBSERVED, Position, WINDOW};
 use ddl_network::proposal::{
     AttentionLayers, ENDPOINT_UNIT, MemberAffine, ProposalLayers, ReadoutLayers, SIMILARITY_SCALES, WAYPOINTS,
 };

@@ -3,7 +3,7 @@
 use crate::StarError;
 use crate::model::{TorchNetwork, tensor};
 use crate::training::schedule::Schedule;
-use ddl_data::Rotation;
+use ddl_core::Rotation;
 use ddl_network::TrainingConfig;
 use ddl_network::seed::{Stage, stream};
 use rand::{Rng as _, RngExt as _};

@@ -5,7 +5,7 @@ use crate::model::{Engine, KernelPass, Layers, NoiseInput, TorchBackend, TorchNe
 use crate::training::draws::StepDraw;
 use crate::training::loss::{mean_distance, mean_squared_distance};
 use crate::training::prepared::TrainingBatch;
-use ddl_data::{OBSERVED, WINDOW};
+use ddl_core::{OBSERVED, WINDOW};
 use ddl_network::backend::{Kernels, Mode};
 use ddl_network::seed::{Stage, stream};
 use ddl_network::{Objective, StepRule};

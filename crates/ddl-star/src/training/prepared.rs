@@ -2,7 +2,7 @@
 
 use crate::StarError;
 use crate::model::{WindowBatch, tensor};
-use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
+use ddl_core::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};

@@ -1,6 +1,6 @@
 //! Assigns windows to batches, orders the batches, and draws their rotations.
 
-use ddl_data::{Rotation, Window};
+use ddl_core::{Rotation, Window};
 use ddl_network::TrainingConfig;
 use ddl_network::seed::{Stage, stream};
 use rand::RngExt as _;

@@ -11,8 +11,7 @@ use crate::training::prepared::{PreparedBatches, TrainingBatch};
 #[cfg(target_os = "linux")]
 use crate::training::recorded::RecordedSteps;
 use crate::training::schedule::Schedule;
-use ddl_core::WorkDone;
-use ddl_data::{OBSERVED, Position, Window};
+use ddl_core::{OBSERVED, Position, Window, WorkDone};
 use ddl_network::backend::Kernels;
 use ddl_network::weights::{Origin, Weights};
 use ddl_network::{EpochReport, NetworkError, StepReport, TrainingConfig};

@@ -1,7 +1,6 @@
 //! Test windows in parts, between which an evaluation reports and can stop.
 
-use ddl_core::Forecast;
-use ddl_data::Window;
+use ddl_core::{Forecast, Window};
 
 const PEDESTRIANS: usize = 128;
 

@@ -5,8 +5,8 @@ use crate::forecast::name;
 use crate::model::ddl::Ddl;
 use crate::run::words::{recipe, subset};
 use crate::windows::test_set::TestSet;
-use ddl_core::Forecast;
-use ddl_data::{Convention, Window, WindowRule};
+use ddl_core::{Forecast, Window};
+use ddl_data::{Convention, WindowRule};
 use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 
 /// Forecasts of one forecaster, one for each window of the test set.

@@ -1,7 +1,6 @@
 //! Straight lines to known goals: the baseline that shows what the dynamics add.
 
-use ddl_core::{Forecast, ForecastError, Forecaster as _, WeightedGoals};
-use ddl_data::Window;
+use ddl_core::{Forecast, ForecastError, Forecaster as _, WeightedGoals, Window};
 use ddl_eval::baseline::StraightLine;
 use ddl_goal::GoalSet;
 

@@ -3,8 +3,7 @@
 use crate::forecast::name::NAME;
 use crate::forecast::walk::Approach;
 use crate::trust::calibration::Calibration;
-use ddl_core::{Forecast, ForecastError, Pace, Spread};
-use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
+use ddl_core::{Forecast, ForecastError, HORIZON, OBSERVED, Pace, PedestrianName, Position, Spread, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
 use ddl_network::{NetworkFrame, StarConfig, StepRule, Variant, motion_bounds};
 use rayon::prelude::*;
@@ -233,8 +232,7 @@ fn failed(error: CertificateError) -> ForecastError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ddl_core::distance;
-    use ddl_data::{ObservationQuality, PedestrianId};
+    use ddl_core::{ObservationQuality, PedestrianId, distance};
 
     /// Two pedestrians, the second badly observed, with two goals each; no part of the network is used.
     #[test]

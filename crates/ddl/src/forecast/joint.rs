@@ -7,8 +7,7 @@
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
 use crate::trust::calibration::Calibration;
-use ddl_core::{Forecast, ForecastError, Spread, TIME_STEP};
-use ddl_data::{HORIZON, PedestrianName, Position};
+use ddl_core::{Forecast, ForecastError, HORIZON, PedestrianName, Position, Spread, TIME_STEP};
 use ddl_scene::{JointMixture, Plan, SceneError};
 
 /// A plan that the pedestrians of a scene respond to.

@@ -3,8 +3,7 @@
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
 use crate::trust::calibration::Calibration;
-use ddl_core::{Forecast, ForecastError};
-use ddl_data::{Position, Window};
+use ddl_core::{Forecast, ForecastError, Position, Window};
 use ddl_goal::GoalSet;
 use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
 

@@ -2,7 +2,7 @@
 //! to positions in `f64`, with the integrator whose guarantee holds for the computed numbers. Positions from elsewhere
 //! can be certified as well.
 
-use ddl_data::{HORIZON, Position};
+use ddl_core::{HORIZON, Position};
 use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSource, MotionBounds, NaturalGradientFlow,
     StableEuler, State, arriving_schedule, rollout_into,

@@ -1,7 +1,7 @@
 //! The expert library as a file of a run.
 
 use crate::error::DdlError;
-use ddl_data::{Position, TIME_STEP, WINDOW, Window};
+use ddl_core::{Position, TIME_STEP, WINDOW, Window};
 use ddl_goal::ExpertLibrary;
 use ddl_network::weights::{Origin, StoredTensor, TensorData, find_tensor, read_tensors, write_tensors};
 use std::path::Path;

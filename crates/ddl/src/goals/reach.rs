@@ -1,6 +1,6 @@
 //! Goals within the reach of a pedestrian.
 
-use ddl_data::{HORIZON, OBSERVED, Window};
+use ddl_core::{HORIZON, OBSERVED, Window};
 use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;
 use rayon::prelude::*;

@@ -1,7 +1,8 @@
 //! Windows with the memory of their places.
 
 use crate::error::DdlError;
-use ddl_data::{Recording, Window};
+use ddl_core::Window;
+use ddl_data::Recording;
 use ddl_memory::{Playback, SceneMemory};
 use std::collections::BTreeMap;
 

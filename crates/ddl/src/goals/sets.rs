@@ -1,7 +1,6 @@
 //! Goals of whole windows, for the network and the straight-line forecasts.
 
-use ddl_core::ForecastError;
-use ddl_data::{Position, Window};
+use ddl_core::{ForecastError, Position, Window};
 use ddl_goal::{GoalEstimator, GoalSet};
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Endpoints that the places of the training may lack: a pedestrian stops at once, turns to either side or turns back.
 
 use ddl_core::motion::RECENT_STEPS;
-use ddl_data::{HORIZON, OBSERVED, Position};
+use ddl_core::{HORIZON, OBSERVED, Position};
 use ddl_network::ProposedEndpoints;
 
 /// Angle from the heading in right angles, and share of the way that the pedestrian would cover straight on.

@@ -1,6 +1,6 @@
 //! The input of a proposal network for the pedestrians of a window.
 
-use ddl_data::{OBSERVED, Position, RememberedTrack, SpatialIndex, Window};
+use ddl_core::{OBSERVED, Position, RememberedTrack, SpatialIndex, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, length_unit};
 use rayon::prelude::*;

@@ -6,8 +6,8 @@ use crate::forecast::joint::GivenPlan;
 use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
 use crate::model::ddl::Ddl;
-use ddl_core::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
-use ddl_data::{LiveTracks, PedestrianId, PedestrianNames, Position, Window};
+use ddl_core::{AdaptiveRegions, Forecast, ForecastError, Forecaster, PedestrianId, PedestrianNames, Position, Window};
+use ddl_data::LiveTracks;
 use ddl_memory::SceneMemory;
 use std::borrow::Borrow;
 

@@ -2,7 +2,7 @@
 
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
-use ddl_data::{OBSERVED, PedestrianId, Position, Window};
+use ddl_core::{OBSERVED, PedestrianId, Position, Window};
 use ddl_memory::SceneMemory;
 use std::collections::BTreeSet;
 
@@ -152,7 +152,7 @@ impl Trial {
 pub(crate) mod tests {
     use super::*;
     use crate::run::builtin_model::BuiltinModel;
-    use ddl_data::ObservationQuality;
+    use ddl_core::ObservationQuality;
     use ddl_network::DeviceChoice;
 
     pub(crate) fn model() -> Ddl {

@@ -3,7 +3,8 @@
 use crate::error::DdlError;
 use crate::live::place_memory::PlaceMemory;
 use crate::model::ddl::Ddl;
-use ddl_data::{LiveTracks, MisfitTreatment, PedestrianId, Position, Window};
+use ddl_core::{PedestrianId, Position, Window};
+use ddl_data::{LiveTracks, MisfitTreatment};
 use ddl_memory::SceneMemory;
 
 /// The state that a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes)
@@ -88,7 +89,8 @@ impl Watch {
 mod tests {
     use super::*;
     use crate::live::place_memory::tests::model;
-    use ddl_data::{Clock, OBSERVED};
+    use ddl_core::OBSERVED;
+    use ddl_data::Clock;
 
     /// A camera of 7 frames a second: 2.8 frames, or 14 ticks, make a step.
     #[test]

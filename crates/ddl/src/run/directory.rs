@@ -23,7 +23,7 @@ use crate::run::builtin_model::BuiltinModel;
 use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::lock::RunLock;
-use ddl_data::remove_temporary_files;
+use ddl_core::remove_temporary_files;
 use ddl_network::EpochReport;
 use serde::{Serialize, de::DeserializeOwned};
 use std::io::Read as _;
@@ -299,5 +299,5 @@ fn on_one_line(path: &Path, value: &impl Serialize) -> Result<String, DdlError> 
 /// # Errors
 /// When the file cannot be written; an earlier one is unchanged.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
-    ddl_data::write_atomically(path, bytes).map_err(|error| DdlError::io(path, error))
+    ddl_core::write_atomically(path, bytes).map_err(|error| DdlError::io(path, error))
 }

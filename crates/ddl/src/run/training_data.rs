@@ -1,6 +1,7 @@
 //! The recordings and windows of a training, and their digests.
 
-use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
+use ddl_core::Window;
+use ddl_data::{Convention, DataError, Dataset, Fold, Recording, WindowRule};
 use ddl_network::weights::in_hex;
 use sha2::{Digest as _, Sha256};
 

@@ -1,6 +1,7 @@
 //! The part of own recordings that training keeps for validation.
 
-use ddl_data::{Convention, Fold, Recording, Window};
+use ddl_core::Window;
+use ddl_data::{Convention, Fold, Recording};
 
 /// Share of the time of own recordings, at their ends, that is kept for validation.
 const SHARE: f64 = 0.2;

@@ -2,8 +2,8 @@
 //! joint futures one object for each moment.
 
 use crate::tracks::moment::Moment;
-use ddl_core::{Disc, Forecast};
-use ddl_data::{FrameNumber, HORIZON, PedestrianName, SceneName};
+use ddl_core::{Disc, Forecast, HORIZON, PedestrianName};
+use ddl_data::{FrameNumber, SceneName};
 use ddl_dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 

@@ -1,8 +1,8 @@
 //! A window with its forecast, as the file counts time.
 
 use crate::forecast::certified::CertifiedForecast;
-use ddl_core::Forecast;
-use ddl_data::{Clock, FrameNumber, HORIZON, OBSERVED, SceneName, Window};
+use ddl_core::{Forecast, HORIZON, OBSERVED, Window};
+use ddl_data::{Clock, FrameNumber, SceneName};
 use ddl_dynamics::LyapunovCertificate;
 
 /// The forecast at one frame.

@@ -1,10 +1,8 @@
 //! What was observed of a recording, and what is doubtful about it.
 
 use crate::tracks::timed::many_frames;
-use ddl_data::{
-    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
-    PlausibilityWarning, Recording, TIME_STEP, Window,
-};
+use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, TIME_STEP, Window};
+use ddl_data::{Clock, Completeness, FrameNumber, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 

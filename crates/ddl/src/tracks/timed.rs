@@ -2,7 +2,8 @@
 
 use crate::error::DdlError;
 use crate::run::track_units::TrackUnits;
-use ddl_data::{Clock, ClockError, Recording, TIME_STEP};
+use ddl_core::TIME_STEP;
+use ddl_data::{Clock, ClockError, Recording};
 
 /// Rates with a smaller relative difference count as equal.
 const SAME: f64 = 0.005;

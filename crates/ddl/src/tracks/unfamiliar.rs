@@ -44,8 +44,8 @@ impl UnfamiliarMotions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ddl_core::Forecast;
-    use ddl_data::{Clock, FrameNumber, PedestrianId, SceneName, Window};
+    use ddl_core::{Forecast, PedestrianId, Window};
+    use ddl_data::{Clock, FrameNumber, SceneName};
 
     /// 7 frames a second: 5 ticks a frame, 14 a step. The window ends at tick 7 * 14 + 70 = 168, frame 33.6, after 4.8
     /// s.

@@ -2,8 +2,7 @@
 //! they were chosen. `ddl-python/examples/regions.py` writes the regions in `calibration.json`, from places, each
 //! forecast by a model that was not trained on it.
 
-use ddl_core::{Pace, RegionTable, mean_speed};
-use ddl_data::{HORIZON, Position};
+use ddl_core::{HORIZON, Pace, Position, RegionTable, mean_speed};
 use ddl_goal::GoalSet;
 use ddl_network::weights::in_hex;
 use serde::{Deserialize, Serialize};

@@ -5,7 +5,7 @@
 //! exponentially. It also falls exponentially with the speed beyond the fastest training motions. Standing pedestrians
 //! widen the distribution of log speeds so much that the distance alone would hardly detect a runner.
 
-use ddl_data::{OBSERVED, Position, Window};
+use ddl_core::{OBSERVED, Position, Window};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 

@@ -7,7 +7,8 @@
 //! other pedestrians at the same place 0.8 % agree: the second half of `bi_corr_400_b_03` of Jülich, 240 people in a
 //! corridor, after the first; the share grows with their number. Who walks less than 5 m has no hash.
 
-use ddl_data::{Position, Recording};
+use ddl_core::Position;
+use ddl_data::Recording;
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeSet;
 
@@ -176,7 +177,8 @@ fn hash(crossings: &[Crossing; CROSSINGS]) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ddl_data::{Dataset, Observation, PedestrianId};
+    use ddl_core::PedestrianId;
+    use ddl_data::{Dataset, Observation};
 
     fn fingerprints_of(recordings: &[Recording]) -> TrackFingerprints {
         TrackFingerprints::of(recordings.iter().flat_map(tracks_of))

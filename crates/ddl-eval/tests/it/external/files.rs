@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use ddl_core::Forecast;
-use ddl_data::{Convention, HORIZON, PedestrianId, Position, Window, WindowRule};
+use ddl_core::{Forecast, HORIZON, PedestrianId, Position, Window};
+use ddl_data::{Convention, WindowRule};
 use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat, Matched};
 use ddl_eval::{Conditions, Protocol};
 

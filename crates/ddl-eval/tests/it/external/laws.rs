@@ -1,7 +1,6 @@
 //! Properties of files of forecasts, for any content.
 
-use ddl_core::Forecast;
-use ddl_data::{OBSERVED, Position, Window};
+use ddl_core::{Forecast, OBSERVED, Position, Window};
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 use ddl_eval::{Protocol, Scores};
 use proptest::collection::vec;
@@ -14,7 +13,7 @@ use crate::generated;
 fn coordinate() -> impl Strategy<Value = f64> + Clone {
     prop_oneof![
         -1e3..1e3_f64,
-        -ddl_data::COORDINATE_LIMIT..=ddl_data::COORDINATE_LIMIT,
+        -ddl_core::COORDINATE_LIMIT..=ddl_core::COORDINATE_LIMIT,
         prop::num::f64::SUBNORMAL,
         Just(-0.0)
     ]

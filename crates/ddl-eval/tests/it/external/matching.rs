@@ -2,9 +2,8 @@
 
 use std::fmt::Write as _;
 
-use ddl_core::average_displacement;
-use ddl_core::{Forecast, Forecaster as _};
-use ddl_data::{Format, PedestrianId, Window, WindowRule, parse_recording};
+use ddl_core::{Forecast, Forecaster as _, PedestrianId, Window, average_displacement};
+use ddl_data::{Format, WindowRule, parse_recording};
 use ddl_eval::baseline::SocialForce;
 use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat};
 use ddl_eval::{Conditions, Protocol, Scores};

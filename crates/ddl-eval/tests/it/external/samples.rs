@@ -3,8 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use ddl_core::Forecast;
-use ddl_data::{PedestrianId, Position, Window};
+use ddl_core::{Forecast, PedestrianId, Position, Window};
 use ddl_eval::external::{Coverage, read_samples, write_samples};
 use proptest::prelude::*;
 

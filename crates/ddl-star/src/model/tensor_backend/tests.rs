@@ -4,7 +4,8 @@
 use super::*;
 use crate::device::ComputeDevice;
 use crate::model::{NoiseInput, TorchNetwork};
-use ddl_data::{Dataset, WINDOW, Window, WindowRule};
+use ddl_core::{WINDOW, Window};
+use ddl_data::{Dataset, WindowRule};
 use ddl_network::{
     BackboneKind, DeviceChoice, ForecastWindows, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
 };

@@ -1,6 +1,6 @@
 //! Rotation of the ground plane, the augmentation that STAR and DDL train with.
 
-use ddl_core::Position;
+use crate::position::Position;
 
 /// A rotation about the world's origin.
 ///

@@ -1,6 +1,6 @@
 //! A spatial index of positions, for the neighbours of pedestrians.
 
-use ddl_core::Position;
+use crate::position::Position;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 

@@ -3,7 +3,8 @@
 use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
-use ddl_core::{FRAME_LIMIT, PedestrianId};
+use crate::pedestrian::PedestrianId;
+use crate::position::FRAME_LIMIT;
 
 /// Assigns numbers to words in order of arrival, from 2^53 on: above all numbers that files may use.
 #[derive(Debug)]
