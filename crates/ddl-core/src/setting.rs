@@ -1,0 +1,100 @@
+//! The settings that messages ask for, in the words of whoever reads them.
+
+use std::fmt::{Display, Formatter, Result};
+use std::sync::OnceLock;
+
+/// A setting of the reader of a message. Libraries name the field; a program, Python or a browser says once how its
+/// users [write](word_settings) it, such as `--max-age`, `max_age=` or `maxAge`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "fields by their names")]
+pub enum Setting {
+    Columns,
+    Data,
+    Device,
+    Dt,
+    Every,
+    Fps,
+    FrameStep,
+    From,
+    Goals,
+    Homography,
+    Keep,
+    MaxAge,
+    Model,
+    Patience,
+    Topic,
+    Unit,
+    Validation,
+    ValidationRecordings,
+    Whole,
+}
+
+/// How users write a setting, by its name such as `max_age` and the value that it should have.
+pub type SettingWords = fn(name: &str, value: Option<&str>) -> String;
+
+static WORDS: OnceLock<SettingWords> = OnceLock::new();
+
+/// Says how the users of this process write settings. The first call counts; without one the field is named.
+pub fn word_settings(words: SettingWords) {
+    // A second door in one process, such as the program within Python, keeps the words of the first.
+    let _ = WORDS.set(words);
+}
+
+impl Setting {
+    /// The name of the field, in lower case with underscores.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Columns => "columns",
+            Self::Data => "data",
+            Self::Device => "device",
+            Self::Dt => "dt",
+            Self::Every => "every",
+            Self::Fps => "fps",
+            Self::FrameStep => "frame_step",
+            Self::From => "from",
+            Self::Goals => "goals",
+            Self::Homography => "homography",
+            Self::Keep => "keep",
+            Self::MaxAge => "max_age",
+            Self::Model => "model",
+            Self::Patience => "patience",
+            Self::Topic => "topic",
+            Self::Unit => "unit",
+            Self::Validation => "validation",
+            Self::ValidationRecordings => "validation_recordings",
+            Self::Whole => "whole",
+        }
+    }
+
+    /// The setting with a value.
+    pub fn to(self, value: impl Display) -> String {
+        worded(self.name(), Some(&value.to_string()))
+    }
+}
+
+impl Display for Setting {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> Result {
+        formatter.write_str(&worded(self.name(), None))
+    }
+}
+
+fn worded(name: &str, value: Option<&str>) -> String {
+    match (WORDS.get(), value) {
+        (Some(words), _) => words(name, value),
+        (None, Some(value)) => format!("{name} {value}"),
+        (None, None) => name.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_words_count() {
+        assert_eq!((Setting::MaxAge.to_string(), Setting::Fps.to(25)), ("max_age".into(), "fps 25".into()));
+        word_settings(|name, value| format!("--{}{}", name.replace('_', "-"), value.unwrap_or_default()));
+        word_settings(|_, _| String::new());
+        assert_eq!((Setting::MaxAge.to_string(), Setting::Fps.to(25)), ("--max-age".into(), "--fps25".into()));
+    }
+}
