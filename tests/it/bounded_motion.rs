@@ -5,8 +5,8 @@
 use ddl::data::{Completeness, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
 use ddl::{
-    BuiltinModel, CertificateError, CertifiedForecast, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _,
-    LiveForecaster, Variant,
+    Answer, BuiltinModel, CertificateError, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster, Request, Session,
+    Variant,
 };
 use ddl_core::distance;
 use ddl_tests::place::Place;
@@ -70,15 +70,15 @@ fn window(tracks: Vec<Vec<Position>>) -> Window {
     Window::new("yard", 0, 1, ids, tracks).unwrap()
 }
 
-fn within_bounds(observed: &[Position], certified: &CertifiedForecast, i: usize) -> Result<(), TestCaseError> {
-    let forecast = &certified.forecast;
+fn within_bounds(observed: &[Position], answer: &Answer, i: usize) -> Result<(), TestCaseError> {
+    let forecast = answer.forecast();
     let familiarity = forecast.familiarity(i);
     prop_assert!(familiarity.is_some_and(|f| f > 0.0 && f <= 1.0), "{familiarity:?}");
     for k in 0..forecast.hypotheses() {
         let path: Vec<Position> = observed[OBSERVED - 1..].iter().chain(forecast.hypothesis(i, k)).copied().collect();
         let fastest = steps(&path).fold(0.0, f64::max);
         prop_assert!(fastest <= limit(observed), "{fastest} m/s after {observed:?}");
-        let certificate = certified.certificate(i, k);
+        let certificate = answer.certificate(i, k).unwrap();
         prop_assert_eq!(certificate.verify(), Ok(()));
         let motion = certificate.motion().unwrap();
         prop_assert!((motion.speed.largest - fastest).abs() < 1e-6);
@@ -103,8 +103,10 @@ proptest! {
         model in 0..MODELS.len(),
     ) {
         let windows = [window(tracks.clone())];
-        let many = MODELS[model].forecast_certified(&windows).unwrap().remove(0);
-        let one = MODELS[model].forecast_central_certified(&windows).unwrap().remove(0);
+        let certified = |request: Request| {
+            MODELS[model].forecast(&windows, &request.with_certificates()).unwrap().remove(0)
+        };
+        let (many, one) = (certified(Request::default()), certified(Request::one()));
         for (i, observed) in tracks.iter().enumerate() {
             within_bounds(observed, &many, i)?;
             within_bounds(observed, &one, i)?;
@@ -118,19 +120,20 @@ fn the_certified_forecast_is_the_forecast() {
     for variant in [Variant::Full, Variant::NoGoalShift] {
         let model = drawn_model::of(variant);
         let goals = model.goal_model().goals(&windows).unwrap();
-        let many = model.forecast_certified(&windows).unwrap();
-        let one = model.forecast_central_certified(&windows).unwrap();
-        let plain = [model.forecast_all(&windows).unwrap(), model.forecast_central(&windows).unwrap()];
-        for ((certified, plain), hypotheses) in [many, one].iter().zip(&plain).zip([20, 1]) {
-            for ((certified, plain), window) in certified.iter().zip(plain).zip(&windows) {
-                assert_eq!(bits::of(&certified.forecast), bits::of(plain));
-                assert_eq!(certified.first_violation(), None);
-                assert_eq!(certified.certificates.len(), window.len() * hypotheses);
+        let mut paths = Vec::new();
+        for (request, hypotheses) in [(Request::default(), 20), (Request::joint(), 20), (Request::one(), 1)] {
+            let plain = model.forecast(&windows, &request).unwrap();
+            let certified = model.forecast(&windows, &request.with_certificates()).unwrap();
+            for ((certified, plain), window) in certified.iter().zip(&plain).zip(&windows) {
+                assert_eq!(bits::of(certified.forecast()), bits::of(plain.forecast()));
+                assert_eq!((certified.first_violation(), plain.certificates().len()), (None, 0));
+                assert_eq!(certified.certificates().len(), window.len() * hypotheses);
             }
+            paths = plain;
         }
-        for ((sets, one), window) in goals.iter().zip(&plain[1]).zip(&windows) {
+        for ((sets, one), window) in goals.iter().zip(&paths).zip(&windows) {
             for (i, set) in sets.iter().enumerate() {
-                assert_eq!(one.goal(i, 0), Some(set.central(window.observed(i))));
+                assert_eq!(one.forecast().goal(i, 0), Some(set.central(window.observed(i))));
             }
         }
     }
@@ -139,7 +142,7 @@ fn the_certified_forecast_is_the_forecast() {
 /// minADE (m) of the model and of straight lines to its goals, for a pedestrian that walks straight at this speed.
 fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
     let position_at = |t: usize| [TIME_STEP * speed * t as f64, 0.0];
-    let forecast = model.forecast(&window(vec![(0..OBSERVED).map(position_at).collect()])).unwrap();
+    let forecast = Forecaster::forecast(model, &window(vec![(0..OBSERVED).map(position_at).collect()])).unwrap();
     let start = position_at(OBSERVED - 1);
     let error = |place: &dyn Fn(usize, usize) -> Position| {
         let ade = |k: usize| {
@@ -180,8 +183,8 @@ fn filled_in_positions_are_not_evidence() {
     for model in builtin() {
         let windows = std::slice::from_ref(&window);
         let median = model.goal_model().goals(windows).unwrap()[0][0].median();
-        let one = model.forecast_central(windows).unwrap();
-        assert_eq!(one[0].goal(0, 0), Some(median), "{}", model.source());
+        let one = model.forecast(windows, &Request::one()).unwrap();
+        assert_eq!(one[0].forecast().goal(0, 0), Some(median), "{}", model.source());
     }
 }
 
@@ -197,12 +200,11 @@ fn models_without_a_flow_are_refused() {
             let expected = CertificateError::NoFlow { variant };
             assert_eq!(source.downcast_ref::<CertificateError>(), Some(&expected));
         };
-        no_flow(model.forecast_certified(&crowd::windows(1, 2)).unwrap_err());
-        let mut live = LiveForecaster::new(&model);
-        match live.push_certified(0, [(PedestrianId(1), [0.0, 0.0])]) {
-            Err(DdlError::Forecast(error)) => no_flow(error),
+        let request = Request::default().with_certificates();
+        no_flow(model.forecast(&crowd::windows(1, 2), &request).unwrap_err());
+        match Session::new(&model, LiveTracks::new(), request).unwrap_err() {
+            DdlError::Forecast(error) => no_flow(error),
             other => panic!("{other:?}"),
         }
-        assert_eq!(live.tracks().last_frame(), None);
     }
 }

@@ -1,17 +1,17 @@
 //! Many cameras in one process: the forecasts of each are the same as if it were alone.
 
-use crate::live::Live;
-use ddl::data::{Completeness, LiveTracks, PedestrianId, Position, SceneName};
-use ddl::eval::baseline::ConstantVelocity;
+use crate::live::LiveProgram;
+use ddl::data::{Completeness, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName};
 use ddl::memory::SceneMemory;
-use ddl::{DdlError, Forecaster as _, LiveForecaster, LiveScenes};
-use ddl_tests::bits;
+use ddl::{Ddl, DdlError, Request, Session, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
+use ddl_tests::{bits, drawn_model};
 use proptest::prelude::*;
 use serde_json::Value;
 use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write as _;
+use std::sync::LazyLock;
 
 type Seen = (i64, Vec<(PedestrianId, Position)>);
 
@@ -22,13 +22,29 @@ fn name(scene: &str) -> SceneName {
 /// The forecasts of a stream: the frame, and the bits of its forecast.
 type Answers = Vec<(i64, Vec<u64>)>;
 
-fn alone(model: ConstantVelocity, frames: &[Seen]) -> Answers {
-    let mut live = LiveForecaster::with_tracks(model, LiveTracks::new().with_completeness(Completeness::Partial));
+static MODEL: LazyLock<Ddl> = LazyLock::new(|| drawn_model::of(Variant::Full));
+
+fn session() -> Session<&'static Ddl> {
+    let tracks = LiveTracks::new().with_completeness(Completeness::Partial);
+    Session::new(&*MODEL, tracks, Request::one()).unwrap()
+}
+
+fn alone(frames: &[Seen]) -> Answers {
+    let mut session = session();
     let answers = frames.iter().filter_map(|(frame, people)| {
-        let now = live.push(*frame, people.iter().copied()).unwrap()?;
-        Some((now.window.frames()[7], bits::of(&now.forecast)))
+        let (window, answer) = session.push(*frame, people.iter().copied()).unwrap().answer?;
+        Some((window.frames()[7], bits::of(answer.forecast())))
     });
     answers.collect()
+}
+
+fn observe(
+    session: &mut Session<&Ddl>,
+    scene: &SceneName,
+    frame: i64,
+    seen: &[(PedestrianId, Position)],
+) -> Result<(), DdlError> {
+    session.observe(Some(scene), frame, seen.iter().copied(), &PedestrianNames::default()).map(drop)
 }
 
 /// Frames of three scenes, and the order in which they arrive and are forecast.
@@ -54,30 +70,28 @@ fn streams() -> impl Strategy<Value = (Vec<Vec<Seen>>, Vec<(usize, bool)>, usize
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
     #[test]
     fn each_scene_is_forecast_as_if_it_were_alone((frames, turns, batch) in streams()) {
-        let model = ConstantVelocity::LastStep;
         let names = ["hall", "yard", "gate"].map(name);
         let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
-        let mut scenes = LiveScenes::new(LiveTracks::new().with_completeness(Completeness::Partial));
-        let mut latest = scenes.clone().latest_only();
+        let (mut scenes, mut latest) = (session(), session().latest_only());
         let mut answers = BTreeMap::<SceneName, Answers>::new();
         let mut answers_of_latest = answers.clone();
-        let take = |scenes: &mut LiveScenes, to: &mut BTreeMap<SceneName, Answers>| {
-            let batch = scenes.next_batch(batch);
-            let forecasts = model.forecast_all(&batch.windows).unwrap();
-            for ((scene, window), forecast) in batch.scenes.into_iter().zip(&batch.windows).zip(&forecasts) {
+        let take = |session: &mut Session<&Ddl>, to: &mut BTreeMap<SceneName, Answers>| {
+            let batch = session.next_batch(batch);
+            let made = session.answer(batch.windows()).unwrap();
+            for ((scene, window), answer) in batch.scenes.into_iter().zip(&batch.windows).zip(&made) {
                 let answers = to.entry(scene.unwrap()).or_default();
-                answers.push((window.frames()[7], bits::of(forecast)));
+                answers.push((window.frames()[7], bits::of(answer.forecast())));
             }
         };
         let rest = (0..3).cycle().take(60).map(|scene| (scene, false));
         for (scene, forecasts) in turns.into_iter().chain(rest) {
             if let Some((frame, people)) = queues[scene].pop_front() {
                 for scenes in [&mut scenes, &mut latest] {
-                    scenes
-                        .observe(Some(&names[scene]), *frame, people.iter().copied())
-                        .unwrap();
+                    observe(scenes, &names[scene], *frame, people).unwrap();
                 }
             }
             if forecasts {
@@ -85,14 +99,14 @@ proptest! {
                 take(&mut latest, &mut answers_of_latest);
             }
         }
-        while scenes.waiting() + latest.waiting() > 0 {
+        while scenes.waiting().count() + latest.waiting().count() > 0 {
             take(&mut scenes, &mut answers);
             take(&mut latest, &mut answers_of_latest);
         }
-        prop_assert_eq!(scenes.dropped(), 0);
+        prop_assert_eq!(scenes.waiting().dropped(), 0);
         let mut dropped = 0;
         for (name, frames) in names.iter().zip(&frames) {
-            let expected = alone(model, frames);
+            let expected = alone(frames);
             let of_latest = answers_of_latest.remove(name).unwrap_or_default();
             dropped += expected.len() - of_latest.len();
             // The forecasts are those without dropped frames, and the last frame is forecast.
@@ -105,26 +119,26 @@ proptest! {
             }
             prop_assert_eq!(answers.remove(name).unwrap_or_default(), expected);
         }
-        prop_assert_eq!(latest.dropped(), dropped as u64);
+        prop_assert_eq!(latest.waiting().dropped(), dropped as u64);
     }
 }
 
 #[test]
 fn a_wrong_frame_of_a_scene_changes_nothing() {
-    let mut scenes = LiveScenes::new(LiveTracks::new());
+    let mut scenes = Session::new(&*MODEL, LiveTracks::new(), Request::one()).unwrap();
     let seen = [(PedestrianId(1), [0.0, 0.0])];
-    let both_see = |scenes: &mut LiveScenes, frame| {
+    let both_see = |scenes: &mut Session<&Ddl>, frame| {
         for scene in ["a", "c"] {
-            scenes.observe(Some(&name(scene)), frame, seen).unwrap();
+            observe(scenes, &name(scene), frame, &seen).unwrap();
         }
     };
     for frame in 0..7 {
         both_see(&mut scenes, frame);
     }
-    let error = scenes.observe(Some(&name("a")), 3, []).unwrap_err();
+    let error = observe(&mut scenes, &name("a"), 3, &[]).unwrap_err();
     assert!(matches!(error, DdlError::Live(_)), "{error}");
     let nowhere = [(PedestrianId(1), [f64::NAN, 0.0])];
-    assert!(scenes.observe(Some(&name("d")), 0, nowhere).is_err());
+    assert!(observe(&mut scenes, &name("d"), 0, &nowhere).is_err());
     assert!(scenes.tracks(Some(&name("d"))).is_none(), "nothing has changed");
     both_see(&mut scenes, 7);
     assert_eq!(scenes.next_batch(100).windows.len(), 2);
@@ -212,7 +226,7 @@ fn what_does_not_fit_scenes_is_refused() {
     place.fails("forecast scenes.csv --model run", &[of_another]);
     let tracks = own_tracks::csv(&own_tracks::three_pedestrians(9));
     let finished = place.run_on(&tracks, &format!("{LINE} --memory memories"));
-    finished.says("memories is a folder, and the lines name no scenes").fails();
+    finished.says("memories is a folder, and the frames name no scenes").fails();
     let finished = place.run_on(&place.text("scenes.csv"), &format!("{LINE} --memory new.memory"));
     finished.says("new.memory is a file of one place").fails();
     assert!(!place.at("new.memory").exists());
@@ -247,7 +261,7 @@ fn each_scene_has_a_memory_file_of_its_own() {
 #[test]
 fn a_scene_that_falls_silent_blocks_no_other() {
     let place = Place::with_model();
-    let mut live = Live::start(&place, "--frame-step 10 --one");
+    let mut live = LiveProgram::start(&place, "--frame-step 10 --one");
     // The frame is complete only at the end of the input.
     let silent = [0, 10].map(|frame| as_csv("silent", &(frame, 1, 0.0, 0.0)));
     live.write(&("frame,scene,pedestrian,x,y\n".to_owned() + &silent.concat()));

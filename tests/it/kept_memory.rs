@@ -1,9 +1,9 @@
 //! The memory of a place that `ddl forecast - --memory` keeps in a file, and its summary by `ddl data`.
 
-use crate::live::Live;
-use ddl::data::LiveTracks;
-use ddl::memory::SceneMemory;
-use ddl::{Ddl, DeviceChoice, LiveForecaster, LiveScenes, MemoryFile, Variant};
+use crate::live::LiveProgram;
+use ddl::data::{LiveTracks, PedestrianNames};
+use ddl::memory::{MemoryFile, SceneMemory};
+use ddl::{Ddl, DeviceChoice, Note, Request, Session, SessionMemory, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{crowd, drawn_model};
@@ -36,14 +36,14 @@ fn kept(place: &Place, name: &str) -> SceneMemory {
     SceneMemory::read(&place.at(name)).unwrap()
 }
 
-fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
+fn hypotheses_of(live: &mut Session<&Ddl>, rows: &[Row]) -> Vec<Value> {
     let mut hypotheses = Vec::new();
     for (frame, positions) in own_tracks::frames(rows) {
-        let Some(now) = live.push(frame, positions).unwrap() else {
+        let Some((window, answer)) = live.push(frame, positions).unwrap().answer else {
             continue;
         };
-        let forecast = &now.forecast;
-        for i in 0..now.window.len() {
+        let forecast = answer.forecast();
+        for i in 0..window.len() {
             let hypothesis = |k: usize| json!([forecast.weight(i, k), forecast.hypothesis(i, k)]);
             hypotheses.push((0..forecast.hypotheses()).map(hypothesis).collect::<Value>());
         }
@@ -63,19 +63,19 @@ fn hypotheses_in(lines: &str) -> Vec<Value> {
 fn a_stream_cut_in_two_continues_with_its_memory() {
     let place = Place::with_model();
     let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
-    let live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(FRAME_STEP).unwrap());
-    let mut live = live.remembering(None).unwrap();
+    let live = Session::new(&model, LiveTracks::with_frame_step(FRAME_STEP).unwrap(), Request::default()).unwrap();
+    let mut live = live.remembering(SessionMemory::Kept).unwrap();
     let [first, second] = [rows(0..50), rows(50..90)];
     // An invalid line ends the first part; the memory until then is kept.
     let input = own_tracks::csv(&first) + "500,1,left,2\n";
     let before = place.run_on(&input, &format!("{LINE} {KEPT}")).says("line ");
     assert_eq!(before.code, Some(1), "{before:?}");
     assert_eq!(hypotheses_in(&before.stdout), hypotheses_of(&mut live, &first));
-    assert_eq!(&kept(&place, "hall.memory"), live.place().unwrap().memory());
+    assert_eq!(&kept(&place, "hall.memory"), live.place(None).unwrap().memory());
     // A session that ends with `clear` is kept as well.
-    live.clear();
+    live.clear(None);
     let (mut file, _) = MemoryFile::open(&place.at("cleared.memory")).unwrap();
-    assert_eq!(file.end(live.place().unwrap().clone()).unwrap(), None);
+    assert_eq!(file.end(live.place(None).unwrap().clone()).unwrap(), None);
     assert_eq!(kept(&place, "cleared.memory").summary().frames, 50);
     let input = own_tracks::csv(&second);
     let after = place.run_on(&input, &format!("{LINE} {KEPT}")).succeeds();
@@ -83,7 +83,7 @@ fn a_stream_cut_in_two_continues_with_its_memory() {
     assert_eq!(after, hypotheses_of(&mut live, &second));
     let forgetful = place.run_on(&input, LINE).succeeds();
     assert!(after.len() > 20 && after != hypotheses_in(&forgetful));
-    assert_eq!(&kept(&place, "hall.memory"), live.place().unwrap().memory());
+    assert_eq!(&kept(&place, "hall.memory"), live.place(None).unwrap().memory());
     // A frame rate inferred from the first two frames is as good as a given one.
     let learned = "forecast - --model run --threads 1 --whole --format jsonl --memory learned.memory";
     place.run_on(&own_tracks::csv(&first), learned).succeeds();
@@ -118,17 +118,17 @@ fn a_tracker_that_restarts_elsewhere_does_not_free_the_file() {
     remember(&place, "hall.memory", &rows(0..300), FRAME_STEP);
     let before = place.read("hall.memory");
     let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
-    let (mut file, memory) = MemoryFile::open(&place.at("hall.memory")).unwrap();
-    let mut scenes = LiveScenes::new(LiveTracks::with_frame_step(FRAME_STEP).unwrap()).latest_only();
-    scenes.remember(None, &model, memory).unwrap();
+    let tracks = LiveTracks::with_frame_step(FRAME_STEP).unwrap();
+    let session = Session::new(&model, tracks, Request::default()).unwrap().latest_only();
+    let mut session = session.remembering(SessionMemory::in_file(&place.at("hall.memory")).unwrap()).unwrap();
     for steps in [200, 50] {
-        scenes.clear(None);
+        session.clear(None);
         for (frame, seen) in own_tracks::frames(&moved(rows(0..steps))) {
-            scenes.observe(None, frame, seen).unwrap();
+            session.observe(None, frame, seen, &PedestrianNames::default()).unwrap();
         }
     }
-    let reason = file.end(scenes.place(None).unwrap().clone()).unwrap();
-    assert!(reason.unwrap().contains("the memory is of another place"));
+    let notes: Vec<String> = session.close().iter().map(Note::line).collect();
+    assert!(notes.len() == 1 && notes[0].contains("the memory is of another place"), "{notes:?}");
     assert!(place.read("hall.memory") == before);
 }
 
@@ -192,7 +192,7 @@ fn a_model_without_a_memory_branch_is_refused_before_anything_is_read() {
 #[test]
 fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
     let place = Place::with_model();
-    let mut first = Live::start(&place, &format!("--whole --frame-step 10 {KEPT}"));
+    let mut first = LiveProgram::start(&place, &format!("--whole --frame-step 10 {KEPT}"));
     first.write(&(own_tracks::csv(&rows(0..30)) + "\n"));
     assert!(first.line()["observed_until"].is_i64());
     let second = place.run_on("", &format!("{LINE} {KEPT}"));

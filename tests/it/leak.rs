@@ -5,7 +5,7 @@ use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Win
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine};
 use ddl::eval::leak;
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
-use ddl::{Ddl, ForecastError, Forecaster, Protocol, Remembering, Variant, WeightedGoals};
+use ddl::{Answer, Ddl, ForecastError, Forecaster, Protocol, Remembering, Request, Variant, WeightedGoals};
 use ddl_tests::made::Made;
 use ddl_tests::{bits, crowd, drawn_model};
 
@@ -88,8 +88,13 @@ fn no_variant_of_the_model_sees_the_future() {
     for variant in Variant::ALL {
         let model = drawn_model::of(variant);
         never_sees_the_future(&model);
-        never_sees_the_future(&Made(|windows: &[Window]| model.forecast_central(windows)));
-        never_sees_the_future(&Made(|windows: &[Window]| model.forecast_scenes(windows, None)));
+        for request in [Request::one(), Request::joint()] {
+            let forecasts = |windows: &[Window]| {
+                let answers = model.forecast(windows, &request)?.into_iter();
+                Ok(answers.map(Answer::into_forecast).collect())
+            };
+            never_sees_the_future(&Made(forecasts));
+        }
     }
 }
 

@@ -1,16 +1,14 @@
 //! Forecasts frame by frame, and those of `ddl forecast -`, which reads from a tracker, agree with forecasts of the
 //! windows of the whole recording.
 
-use ddl::data::{LiveTracks, Window};
-use ddl::eval::baseline::ConstantVelocity;
-use ddl::{DdlError, ForecastError, Forecaster as _, LiveForecaster};
-use ddl_tests::made::Made;
+use ddl::data::LiveTracks;
+use ddl::{DdlError, Request, Session, Variant};
+use ddl_tests::drawn_model;
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json, json_lines};
 use ddl_tests::program;
 use ddl_tests::program::Finished;
 use serde_json::Value;
-use std::cell::Cell;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
@@ -19,39 +17,27 @@ fn an_error_changes_nothing() {
     let rows = own_tracks::three_pedestrians(9);
     let frames = own_tracks::frames(&rows);
     let pedestrians = |frame: i64| frames[&frame].clone();
-    let fails = Cell::new(false);
-    let model = Made(|windows: &[Window]| {
-        if fails.get() {
-            return Err(ForecastError::model("made", "on demand"));
-        }
-        ConstantVelocity::LastStep.forecast_all(windows)
-    });
-    let mut live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(FRAME_STEP).unwrap());
-    live.push(0, pedestrians(0)).unwrap();
+    let (model, tracks) = (drawn_model::of(Variant::Full), LiveTracks::with_frame_step(FRAME_STEP).unwrap());
+    let mut session = Session::new(&model, tracks, Request::one()).unwrap();
+    session.push(0, pedestrians(0)).unwrap();
     for frame in (10..90).step_by(10) {
-        let before = live.tracks().clone();
-        let error = live.push(frame - 10, pedestrians(frame)).unwrap_err();
+        let before = session.tracks(None).cloned();
+        let error = session.push(frame - 10, pedestrians(frame)).unwrap_err();
         assert!(matches!(error, DdlError::Live(_)), "{error}");
-        if frame >= 70 {
-            fails.set(true);
-            let error = live.push(frame, pedestrians(frame)).unwrap_err();
-            fails.set(false);
-            assert!(matches!(error, DdlError::Forecast(_)), "{error}");
-        }
-        assert_eq!(live.tracks(), &before);
-        let now = live.push(frame, pedestrians(frame)).unwrap();
-        assert_eq!(now.is_some(), frame >= 70);
+        assert_eq!(session.tracks(None).cloned(), before);
+        let now = session.push(frame, pedestrians(frame)).unwrap();
+        assert_eq!(now.answer.is_some(), frame >= 70);
     }
 }
 
 /// A program that forecasts a stream of standard input.
-pub(crate) struct Live {
+pub(crate) struct LiveProgram {
     pub(crate) child: Child,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
 }
 
-impl Live {
+impl LiveProgram {
     pub(crate) fn start(place: &Place, options: &str) -> Self {
         let line = format!("forecast - --model run --threads 1 --format jsonl {options}");
         let mut command = program::command(place.path(), &line);
@@ -92,7 +78,7 @@ fn every_frame_is_answered_before_the_next_one() {
     let rows = own_tracks::three_pedestrians(10);
     let expected = place.forecast(&rows, "--format jsonl").succeeds();
     let mut expected = json_lines::<Value>(&expected).into_iter();
-    let mut live = Live::start(&place, "--whole --fps 25");
+    let mut live = LiveProgram::start(&place, "--whole --fps 25");
     live.write("frame,pedestrian,x,y\n");
     for frame in (0..100).step_by(10) {
         // An empty line ends the frame.
@@ -113,13 +99,13 @@ fn every_frame_is_answered_before_the_next_one() {
 fn two_frames_are_enough_and_a_closed_output_ends_it_quietly() {
     let place = Place::with_model();
     let rows = own_tracks::three_pedestrians(10);
-    let mut live = Live::start(&place, "--one --certificate");
+    let mut live = LiveProgram::start(&place, "--one --certificate");
     live.write(&format!("frame,pedestrian,x,y\n{}\n", rows_of(&rows, 0..11)));
     let first = live.line();
     assert_eq!((&first["observed_until"], &first["unseen"]), (&10.into(), &6.into()));
     assert_eq!(first["hypotheses"].as_array().unwrap().len(), 1);
     assert_eq!(first["hypotheses"][0]["certificate"]["holds"], true);
-    let Live { child, mut input, output } = live;
+    let LiveProgram { child, mut input, output } = live;
     drop(output);
     for frame in (20..100).step_by(10) {
         // It may have ended already.

@@ -1,8 +1,8 @@
-//! A live forecaster with a memory of its place.
+//! A session with a memory of its place.
 
 use ddl::data::{LiveTracks, Recording, Window};
 use ddl::memory::{Playback, SceneMemory};
-use ddl::{Forecaster as _, LiveForecaster, Variant};
+use ddl::{Request, Session, SessionMemory, Variant};
 use ddl_tests::{bits, crowd, drawn_model};
 
 #[test]
@@ -18,30 +18,36 @@ fn live_forecasts_agree_with_a_replay_of_the_recording() {
     let memory = SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY).unwrap();
     let replayed = memory.replay(&recording, Playback::Forward, recording.observed_windows(), 12);
     let mut replayed = replayed.unwrap().into_iter();
-    let live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(step).unwrap());
-    let mut live = live.remembering(None).unwrap();
-    let mut certified = live.clone();
+    let session = |request| {
+        let session = Session::new(&model, LiveTracks::with_frame_step(step).unwrap(), request).unwrap();
+        session.remembering(SessionMemory::Kept).unwrap()
+    };
+    let mut live = session(Request::default());
+    let mut certified = session(Request::default().with_certificates());
     let remembers = |window: &Window| (0..window.len()).any(|i| !window.remembered(i).is_empty());
     let (mut remembering, mut changed) = (0, 0);
     for &frame in recording.frames() {
         let seen = recording.at(frame).iter().map(|seen| (seen.pedestrian, seen.position));
-        let evidence = certified.push_certified(frame, seen.clone()).unwrap();
-        let now = live.push(frame, seen).unwrap();
+        let evidence = certified.push(frame, seen.clone()).unwrap().answer;
+        let now = live.push(frame, seen).unwrap().answer;
         assert_eq!(now.is_some(), evidence.is_some(), "frame {frame}");
-        let Some((now, evidence)) = now.zip(evidence) else {
+        let Some(((observed, now), (_, evidence))) = now.zip(evidence) else {
             continue;
         };
         let window = replayed.next().unwrap();
-        assert!(now.window == window, "frame {frame}");
-        assert_eq!(bits::of(&now.forecast), bits::of(&model.forecast(&window).unwrap()));
-        assert_eq!(bits::of(&evidence.forecast.forecast), bits::of(&now.forecast));
-        let expected = model.forecast_certified(std::slice::from_ref(&window)).unwrap();
-        assert_eq!(evidence.forecast.certificates, expected[0].certificates);
+        assert!(observed == window, "frame {frame}");
+        let asked = |request: &Request, window: &Window| {
+            model.forecast(std::slice::from_ref(window), request).unwrap().remove(0)
+        };
+        assert_eq!(bits::of(now.forecast()), bits::of(asked(&Request::default(), &window).forecast()));
+        assert_eq!(bits::of(evidence.forecast()), bits::of(now.forecast()));
+        let expected = asked(&Request::default().with_certificates(), &window);
+        assert_eq!(evidence.certificates(), expected.certificates());
         remembering += usize::from(remembers(&window));
-        let forgetful = model.forecast(&window.with_remembered(|_| Vec::new()));
-        changed += usize::from(bits::of(&forgetful.unwrap()) != bits::of(&now.forecast));
+        let forgetful = asked(&Request::default(), &window.with_remembered(|_| Vec::new()));
+        changed += usize::from(bits::of(forgetful.forecast()) != bits::of(now.forecast()));
     }
     assert!(replayed.next().is_none());
     assert!(remembering > 20 && changed == remembering, "{changed} of {remembering}");
-    assert!(live.place().unwrap().memory().segments() > 100);
+    assert!(live.place(None).unwrap().memory().segments() > 100);
 }

@@ -1,7 +1,7 @@
 //! Golden forecasts of a synthetic scene, stored in the repository (`tests/golden`).
 
 use ddl::data::{PedestrianId, Position, Window};
-use ddl::{BuiltinModel, Ddl, Forecaster as _};
+use ddl::{BuiltinModel, Ddl, Request};
 use ddl_core::distance;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -56,9 +56,9 @@ impl Golden {
     /// The forecasts of a model, rounded as in the file.
     pub fn of(model: &Ddl) -> Vec<Self> {
         let window = window();
-        let forecast = model.forecast(&window).expect("a forecast");
-        let one = model.forecast_central(std::slice::from_ref(&window));
-        let one = one.expect("one forecast each").remove(0);
+        let [forecast, one] = [Request::default(), Request::one()].map(|request| {
+            model.forecast(std::slice::from_ref(&window), &request).expect("a forecast").remove(0).into_forecast()
+        });
         let familiarity = model.goal_model().familiarity(&window);
         let of_pedestrian = |i: usize| {
             let mut order: Vec<usize> = (0..forecast.hypotheses()).collect();

@@ -3,15 +3,15 @@
 use crate::boundary::{Failure, c_text};
 use crate::layout::{ddl_cells, ddl_misfit, ddl_occupancy, ddl_point, ddl_risks, ddl_view};
 use crate::model::Threads;
-use ddl::Forecast;
 use ddl::data::{HORIZON, Misfit, OBSERVED, ObservationQuality, Window};
 use ddl::scene::{Area, Futures, Occupancy, Plan};
+use ddl::{Answer, Forecast};
 use std::ffi::CString;
 use std::ptr;
 use std::sync::Arc;
 
 #[derive(Debug, Default)]
-pub(crate) struct Answer {
+pub(crate) struct ShownAnswer {
     held: Option<Held>,
     ids: Vec<i64>,
     numbers: Packed,
@@ -30,17 +30,14 @@ pub(crate) struct Answer {
 #[derive(Debug)]
 pub(crate) struct Held {
     pub(crate) window: Window,
-    pub(crate) forecast: Forecast,
-    pub(crate) is_joint: bool,
-    /// Whether people were asked to respond to a plan.
-    pub(crate) has_plan: bool,
+    pub(crate) answer: Answer,
     pub(crate) threads: Arc<Threads>,
 }
 
 /// What a live frame says besides its forecast.
 #[derive(Debug, Default)]
-pub(crate) struct Notes<'a> {
-    pub(crate) misfits: &'a [Misfit],
+pub(crate) struct LiveNotes {
+    pub(crate) misfits: Vec<Misfit>,
     pub(crate) remembered: usize,
     pub(crate) warning: Option<String>,
 }
@@ -70,19 +67,19 @@ impl Packed {
     }
 }
 
-impl Answer {
+impl ShownAnswer {
     /// Replaces the stored forecast by a new one; `None` if no pedestrian can be forecast.
-    pub(crate) fn hold(&mut self, held: Option<Held>, notes: &Notes<'_>) {
+    pub(crate) fn hold(&mut self, held: Option<Held>, notes: &LiveNotes) {
         self.ids.clear();
         self.certified.clear();
         self.numbers.clear();
-        if let Some(Held { window, forecast, .. }) = &held {
-            self.fill(window, forecast);
+        if let Some(Held { window, answer, .. }) = &held {
+            self.fill(window, answer.forecast());
         }
         let [past, age, uncertainty, paths, weights, goals, familiarity, spread] = self.numbers.arrays();
         self.view = ddl_view {
             pedestrians: self.ids.len(),
-            hypotheses: held.as_ref().map_or(0, |held| held.forecast.hypotheses()),
+            hypotheses: held.as_ref().map_or(0, |held| held.answer.forecast().hypotheses()),
             ids: address(&self.ids),
             past: past.cast(),
             age,
@@ -101,7 +98,7 @@ impl Answer {
     }
 
     /// Leaves the stored forecast as it is, and marks it as older than the last frame.
-    pub(crate) fn keep(&mut self, notes: &Notes<'_>) {
+    pub(crate) fn keep(&mut self, notes: &LiveNotes) {
         self.misfits.clear();
         self.misfits.extend(
             notes.misfits.iter().map(|misfit| ddl_misfit { id: misfit.pedestrian.0, distance: misfit.distance }),
@@ -133,9 +130,10 @@ impl Answer {
 
     /// Radii `[N][K][12]` of the discs around the hypotheses in the region of a level; NaN where there is none.
     pub(crate) fn compute_radii(&mut self, level: f64) -> Result<*const f64, Failure> {
-        let Some(Held { forecast, .. }) = &self.held else {
+        let Some(held) = &self.held else {
             return Ok(ptr::null());
         };
+        let forecast = held.answer.forecast();
         let none = || Failure::invalid("the hypotheses of this model have no weights, and so no regions");
         let [low, high] = forecast.regions().ok_or_else(none)?.range();
         if !(low..=high).contains(&level) {
@@ -156,11 +154,7 @@ impl Answer {
         ego: Option<i64>,
         seen: bool,
     ) -> Result<(), Failure> {
-        let (held, futures) = self.joint()?;
-        if seen && held.has_plan {
-            let words = "the people of this forecast already keep away from the plan it was given: set unseen";
-            return Err(Failure::invalid(words));
-        }
+        let (held, futures) = joint(self.held.as_ref())?;
         let index = |id| {
             let index = held.window.pedestrians().iter().position(|known| known.0 == id);
             index.ok_or_else(|| Failure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
@@ -168,7 +162,7 @@ impl Answer {
         let ego = ego.map(index).transpose()?;
         let risks = held.threads.run(|| {
             let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
-            risks(&futures, plans, within, ego).map_err(Failure::invalid)
+            risks(futures, plans, within, ego).map_err(Failure::invalid)
         })?;
         let numbers = &mut self.risk_numbers;
         numbers.clear();
@@ -184,7 +178,7 @@ impl Answer {
 
     /// Grids of the probability that a cell is occupied.
     pub(crate) fn compute_occupancy(&mut self, cells: &ddl_cells<'_>) -> Result<(), Failure> {
-        let (held, futures) = self.joint()?;
+        let (held, futures) = joint(self.held.as_ref())?;
         let threads = Arc::clone(&held.threads);
         let area = match cells.corners {
             Some(corners) => {
@@ -217,14 +211,13 @@ impl Answer {
         };
         Ok(())
     }
+}
 
-    fn joint(&self) -> Result<(&Held, Futures), Failure> {
-        let held = self.held.as_ref().filter(|held| held.is_joint);
-        let words = "risk and occupancy need a forecast of somebody, with joint set in its request";
-        let held = held.ok_or_else(|| Failure::invalid(words))?;
-        let futures = Futures::new(&held.window, held.forecast.clone()).map_err(Failure::invalid)?;
-        Ok((held, futures))
-    }
+fn joint(held: Option<&Held>) -> Result<(&Held, &Futures), Failure> {
+    let joint = held.and_then(|held| Some((held, held.answer.futures().ok()?)));
+    joint.ok_or_else(|| {
+        Failure::invalid("risk and occupancy need a forecast of somebody, with joint set in its request")
+    })
 }
 
 fn pairs(forecast: &Forecast) -> impl Iterator<Item = (usize, usize)> + use<> {

@@ -3,19 +3,21 @@
 #![allow(unsafe_code, reason = "functions of C")]
 #![allow(clippy::missing_safety_doc, reason = "`ddl.h` begins with what holds for all pointers")]
 
-use crate::answer::Notes;
+use crate::answer::{Held, LiveNotes};
 use crate::boundary::{Failure, guarded, last_error, needed, text, values};
+use crate::handles::{ddl_forecast, ddl_live, ddl_model};
 use crate::layout::{
-    ddl_cells, ddl_forecast, ddl_live, ddl_live_options, ddl_model, ddl_observation, ddl_occupancy, ddl_plan,
-    ddl_plan_point, ddl_point, ddl_request, ddl_risks, ddl_status, ddl_view,
+    ddl_cells, ddl_live_options, ddl_observation, ddl_occupancy, ddl_plan, ddl_plan_point, ddl_point, ddl_request,
+    ddl_risks, ddl_status, ddl_view,
 };
-use crate::live::Live;
-use crate::model::{Model, Request};
-use ddl::GivenPlan;
+use crate::live::LivePlace;
+use crate::model::LoadedModel;
 use ddl::data::{OBSERVED, PedestrianId, Window};
 use ddl::scene::{Plan, PlanPoint};
+use ddl::{GivenPlan, Request};
 use std::ffi::c_char;
 use std::mem::MaybeUninit;
+use std::sync::Arc;
 
 /// The version of the library, such as "0.2.0".
 #[unsafe(no_mangle)]
@@ -57,7 +59,7 @@ pub unsafe extern "C" fn ddl_model_open(
         // SAFETY: a text of the caller.
         let name = needed(unsafe { text(name, "name")? }, "name")?;
         let model = needed(model, "model")?;
-        model.write(Box::into_raw(Box::new(ddl_model(Model::open(name, threads)?))));
+        model.write(Box::into_raw(Box::new(ddl_model(LoadedModel::open(name, threads)?))));
         Ok(())
     })
 }
@@ -94,12 +96,13 @@ pub unsafe extern "C" fn ddl_model_forecast(
         let tracks = tracks.map(|track| track.iter().map(|position| [position.x, position.y]).collect());
         let ids = (0..count as i64).map(PedestrianId).collect();
         let window = Window::new("past", 0, 1, ids, tracks.collect()).map_err(Failure::invalid)?;
-        if let Request::Joint(Some(GivenPlan { ego: Some(ego), .. })) = &request
+        if let Some(GivenPlan { ego: Some(ego), .. }) = request.plan()
             && window.named(ego).is_none()
         {
             return Err(Failure::invalid(format!("ego is {ego}, but no such pedestrian is given")));
         }
-        forecast.0.hold(Some(model.forecast(window, &request)?), &Notes::default());
+        let answer = model.forecast(&window, &request)?;
+        forecast.0.hold(Some(Held { window, answer, threads: Arc::clone(&model.threads) }), &LiveNotes::default());
         Ok(())
     })
 }
@@ -116,7 +119,7 @@ pub unsafe extern "C" fn ddl_live_new(
         let options = options.unwrap_or_default();
         // SAFETY: a text of the caller.
         let memory = unsafe { text(options.memory, "memory")? };
-        live.write(Box::into_raw(Box::new(ddl_live(Live::new(&model.0, &options, memory)?))));
+        live.write(Box::into_raw(Box::new(ddl_live(LivePlace::new(&model.0, &options, memory)?))));
         Ok(())
     })
 }
@@ -139,7 +142,7 @@ pub unsafe extern "C" fn ddl_live_observe(
         // SAFETY: rows of the caller, and those of a plan.
         let (rows, request) = unsafe { (values(observations, count, "observations")?, asked(request)?) };
         let seen = rows.iter().map(|row| (PedestrianId(row.id), [row.position.x, row.position.y]));
-        live.observe(at, seen.collect(), &request, forecast)
+        live.observe(at, seen.collect(), request, forecast)
     })
 }
 
@@ -228,7 +231,7 @@ pub extern "C" fn ddl_forecast_occupancy(
 /// The rows of its plan are the caller's.
 unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, Failure> {
     let Some(request) = request else {
-        return Ok(Request::Hypotheses);
+        return Ok(Request::default());
     };
     let is_planned = !request.plan.points.is_null() || request.plan.count > 0;
     if request.ego.is_some() && !is_planned {
@@ -236,12 +239,12 @@ unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, Failure> {
     }
     if !request.joint {
         let words = "only joint futures respond to a plan: set joint, or leave out the plan";
-        return if is_planned { Err(Failure::invalid(words)) } else { Ok(Request::Hypotheses) };
+        return if is_planned { Err(Failure::invalid(words)) } else { Ok(Request::default()) };
     }
     // SAFETY: the caller's.
     let plan = is_planned.then(|| unsafe { planned(&request.plan) }).transpose()?;
     let ego = request.ego.map(|&id| PedestrianId(id).into());
-    Ok(Request::Joint(plan.map(|plan| GivenPlan { plan, ego })))
+    Ok(plan.map_or_else(Request::joint, |plan| Request::given(GivenPlan { plan, ego })))
 }
 
 /// # Safety

@@ -2,9 +2,6 @@
 
 #![allow(non_camel_case_types, reason = "names of C")]
 
-use crate::answer::Answer;
-use crate::live::Live;
-use crate::model::Model;
 use std::ffi::c_char;
 
 /// What a call returns. `ddl_last_error` has the words.
@@ -20,18 +17,6 @@ pub enum ddl_status {
     /// A defect of the library. Free the handles of the call; others are unharmed.
     DEFECT = 3,
 }
-
-/// A trained model. Any number of threads may use it at the same time.
-#[derive(Debug)]
-pub struct ddl_model(pub(crate) Model);
-
-/// The tracks of one place. Calls of several threads wait for each other. It keeps its model, which may be freed.
-#[derive(Debug)]
-pub struct ddl_live(pub(crate) Live);
-
-/// A forecast and the answers about it, in memory that the next forecast uses again. One thread at a time.
-#[derive(Debug, Default)]
-pub struct ddl_forecast(pub(crate) Answer);
 
 /// A position on the ground, metres.
 #[repr(C)]

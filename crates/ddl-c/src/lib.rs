@@ -3,6 +3,7 @@
 mod answer;
 mod boundary;
 pub mod functions;
+pub mod handles;
 pub mod layout;
 mod live;
 mod model;

@@ -1,52 +1,30 @@
-//! A loaded model, the threads that it computes on, and what is asked of it.
+//! A loaded model, and the threads that it computes on.
 
-use crate::answer::Held;
 use crate::boundary::Failure;
 use ddl::data::Window;
-use ddl::{Ddl, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource};
+use ddl::{Answer, Ddl, DeviceChoice, ModelSource, Request};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::path::Path;
 use std::sync::Arc;
 
 #[derive(Debug)]
-pub(crate) struct Model {
+pub(crate) struct LoadedModel {
     pub(crate) ddl: Arc<Ddl>,
     pub(crate) threads: Arc<Threads>,
 }
 
-/// What to forecast.
-#[derive(Debug)]
-pub(crate) enum Request {
-    Hypotheses,
-    Joint(Option<GivenPlan>),
-}
-
-impl Model {
+impl LoadedModel {
     /// The built-in model of that name, or the model at that path.
     pub(crate) fn open(name: &str, threads: usize) -> Result<Self, Failure> {
         let threads = Arc::new(Threads::new(threads)?);
         let source = ModelSource::named(Path::new(name));
         let ddl = threads.run(|| Ddl::open(&source, DeviceChoice::Cpu).map_err(Failure::file))?;
-        let ddl = Arc::new(ddl);
-        Ok(Self { ddl, threads })
+        Ok(Self { ddl: Arc::new(ddl), threads })
     }
 
-    pub(crate) fn forecast(&self, window: Window, request: &Request) -> Result<Held, Failure> {
-        let forecast = || match request {
-            Request::Hypotheses => self.ddl.forecast(&window),
-            Request::Joint(given) => {
-                let scenes = self.ddl.forecast_scenes(std::slice::from_ref(&window), given.as_ref());
-                scenes.map(|mut scenes| scenes.remove(0))
-            }
-        };
-        let forecast = || forecast().map_err(|error: ForecastError| Failure::invalid(error));
-        Ok(Held {
-            forecast: self.threads.run(forecast)?,
-            window,
-            is_joint: matches!(request, Request::Joint(_)),
-            has_plan: matches!(request, Request::Joint(Some(_))),
-            threads: Arc::clone(&self.threads),
-        })
+    pub(crate) fn forecast(&self, window: &Window, request: &Request) -> Result<Answer, Failure> {
+        let forecast = || self.ddl.forecast(std::slice::from_ref(window), request).map_err(Failure::invalid);
+        Ok(self.threads.run(forecast)?.remove(0))
     }
 }
 

@@ -4,9 +4,10 @@
 
 use crate::boundary::{guarded, values};
 use crate::functions::*;
-use crate::layout::{ddl_model, ddl_observation, ddl_point, ddl_request, ddl_status, ddl_view};
+use crate::handles::ddl_model;
+use crate::layout::{ddl_observation, ddl_point, ddl_request, ddl_status, ddl_view};
 use ddl::data::{Clock, Completeness, LiveTracks, PedestrianId, TimeUnit, Window};
-use ddl::{AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, LiveForecaster};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Request, Session};
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
 use std::slice;
@@ -27,8 +28,7 @@ fn live_tracks_have_the_bits_of_the_facade() {
     let tracks = LiveTracks::with_clock(Clock::with_stamps(TimeUnit::Seconds));
     let tracks = tracks.with_completeness(Completeness::Partial);
     let model = Ddl::builtin(BuiltinModel::World, DeviceChoice::Cpu).unwrap();
-    let expected = LiveForecaster::with_tracks(model, tracks);
-    let mut expected = expected.with_adaptive_regions(AdaptiveRegions::default());
+    let mut expected = Session::new(model, tracks, Request::default()).unwrap();
 
     let (mut model, mut live, mut forecast) = (MaybeUninit::uninit(), MaybeUninit::uninit(), ddl_forecast_new());
     // SAFETY: a text and addresses of this function, written where the status is OK; each handle is freed once.
@@ -48,13 +48,14 @@ fn live_tracks_have_the_bits_of_the_facade() {
             unsafe { ddl_live_observe(Some(&live), at, rows.as_ptr(), PEOPLE, Some(&request), Some(&mut forecast)) };
         assert_eq!(status, ddl_status::OK);
         let (frame, seen) = (i64::from(tick) * 100_000, seen(tick));
-        let now = if request.joint { expected.push_joint(frame, seen, None) } else { expected.push(frame, seen) };
+        let asked = if request.joint { Request::joint() } else { Request::default() };
+        expected.ask(asked.with_adaptive_regions()).unwrap();
         let view = ddl_forecast_view(Some(&forecast)).unwrap();
-        let Some(now) = now.unwrap() else {
+        let Some((window, answer)) = expected.push(frame, seen).unwrap().answer else {
             assert_eq!((tick, view.pedestrians), (0, 0));
             continue;
         };
-        is_shown(view, &now.window, &now.forecast);
+        is_shown(view, &window, answer.forecast());
     }
     ddl_live_free(Some(live));
     ddl_forecast_free(Some(forecast));

@@ -7,7 +7,7 @@ fn the_header_is_that_of_the_sources() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let recipe = cbindgen::Config::from_file(folder.join("cbindgen.toml")).unwrap();
     let sources = cbindgen::Builder::new().with_config(recipe);
-    let sources = sources.with_src(folder.join("src/layout.rs"));
+    let sources = sources.with_src(folder.join("src/layout.rs")).with_src(folder.join("src/handles.rs"));
     let mut made = Vec::new();
     let header = sources.with_src(folder.join("src/functions.rs")).generate().unwrap();
     header.write(&mut made);

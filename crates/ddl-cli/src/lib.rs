@@ -5,7 +5,6 @@ mod command;
 mod interrupt;
 mod kept_inputs;
 mod output;
-mod plans;
 mod progress;
 mod recordings;
 mod result_lines;
@@ -59,6 +58,10 @@ enum Command {
 /// Writes to the process's standard output and standard error. Arguments that cannot be parsed end the process with
 /// exit code 2, `--help` and `--version` with 0.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
+    ddl::word_settings(|name, value| {
+        let option = format!("--{}", name.replace('_', "-"));
+        value.map_or(option.clone(), |value| format!("{option} {value}"))
+    });
     let matches = Cli::command().get_matches_from(arguments);
     let command =
         Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.format(&mut Cli::command()).exit()).command;

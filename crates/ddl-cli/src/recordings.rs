@@ -3,8 +3,7 @@
 use crate::telling::{self, tell};
 use crate::units::{ReadRecording, Units};
 use anyhow::{Context as _, bail};
-use ddl::data::PlausibilityWarning;
-use ddl::{OWN_CLOCKS, TimedRecording, in_frames, words_of_misfits, words_of_warning};
+use ddl::{Note, TimedRecording, in_frames, misfits_of};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
@@ -74,7 +73,7 @@ fn tell_grouped<'a>(kind: &str, messages: impl IntoIterator<Item = (&'a str, Str
 pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ReadRecording>) {
     let notes = read.into_iter().flat_map(|ReadRecording { timed, .. }| {
         let notes = timed.notes.iter().chain(&timed.guessed);
-        notes.map(move |note| (timed.recording.name(), note.clone()))
+        notes.map(move |note| (timed.recording.name(), note.to_string()))
     });
     tell_grouped("note", notes);
 }
@@ -130,16 +129,12 @@ pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
     for TimedRecording { recording, clock, .. } in read.iter().map(|read| &read.timed) {
         let observed = recording.observe_each(recording.live_tracks(), |_| ());
         let warning = recording.speed_warning();
-        let misfits = words_of_misfits(recording, *clock, &observed.misfits, warning.as_ref());
-        let warning = warning.map(|warning| words_of_warning(&in_frames(*clock, warning)));
+        let misfits = misfits_of(recording, *clock, &observed.misfits, warning.as_ref());
+        let warning = warning.map(|warning| Note::Implausible(in_frames(*clock, warning)));
         let doubts = warning.into_iter().chain(misfits);
-        warnings.extend(doubts.map(|words| (recording.name(), words)));
-        notes.extend((!observed.has_common_frames).then(|| (recording.name(), OWN_CLOCKS.to_owned())));
+        warnings.extend(doubts.map(|note| (recording.name(), note.to_string())));
+        notes.extend((!observed.has_common_frames).then(|| (recording.name(), Note::OwnClocks.to_string())));
     }
     tell_grouped("note", notes);
     tell_grouped("warning", warnings);
-}
-
-pub(crate) fn warn_of(warning: &PlausibilityWarning) {
-    tell(format_args!("warning: {}", words_of_warning(warning)));
 }

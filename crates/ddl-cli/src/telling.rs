@@ -1,5 +1,6 @@
 //! Messages for users on standard error.
 
+use ddl::Note;
 use std::fmt::{Arguments, Display};
 use std::io::{Error, ErrorKind, Write as _, stderr};
 use std::time::Duration;
@@ -7,6 +8,11 @@ use std::time::Duration;
 /// Writes a line to standard error. A closed standard error is ignored; `eprintln!` would panic.
 pub(crate) fn tell(line: Arguments<'_>) {
     let _ = writeln!(stderr(), "{line}");
+}
+
+/// Tells a remark of the libraries.
+pub(crate) fn tell_note(note: &Note) {
+    tell(format_args!("{}", note.line()));
 }
 
 pub(crate) fn human(duration: Duration) -> String {

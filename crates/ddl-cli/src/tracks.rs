@@ -1,12 +1,11 @@
 //! The options that choose tracks, and the windows cut from them.
 
-use crate::recordings;
-use crate::telling::tell;
+use crate::telling::{tell, tell_note};
 use crate::units::{ReadRecording, Units};
 use anyhow::bail;
 use clap::Args;
-use ddl::data::{Completeness, LiveTracks};
-use ddl::{OWN_CLOCKS, ObservedTracks, RunConfig};
+use ddl::data::LiveTracks;
+use ddl::{Note, ObservedTracks, RunConfig, WindowOptions};
 use ddl_mcap::TrackTopic;
 use std::path::{Path, PathBuf};
 
@@ -53,10 +52,9 @@ impl TrackOptions {
         self.whole || self.every.is_some()
     }
 
-    /// These tracks with the options' windows.
-    pub(crate) fn windows_of(&self, tracks: LiveTracks) -> LiveTracks {
-        let tracks = tracks.with_completeness(Completeness::of(self.whole));
-        tracks.with_max_age(self.max_age).with_interval(self.every)
+    /// The windows that the options ask for.
+    pub(crate) fn windows(&self) -> WindowOptions {
+        WindowOptions { whole: self.whole, max_age: self.max_age, every: self.every, last: self.last }
     }
 
     pub(crate) fn live_units(&self, run: &RunConfig) -> anyhow::Result<Units> {
@@ -69,32 +67,19 @@ impl TrackOptions {
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast, for a run; of a log, its topic.
     pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<(ObservedTracks, Option<TrackTopic>)> {
         let ReadRecording { topic, timed, .. } = self.units.or_those_of(run).read(self.file())?;
-        for note in timed.notes.iter().chain(&timed.guessed) {
-            tell(format_args!("note: {note}"));
-        }
-        let mut tracks = self.windows_of(timed.recording.live_tracks());
-        if self.last && self.every.is_none() {
-            // With clocks of their own, too, the last row is the last moment.
-            tracks = tracks.with_interval(0.0);
-        }
+        timed.notes.iter().chain(&timed.guessed).for_each(tell_note);
+        let tracks = self.windows().tracks(timed.recording.live_tracks())?;
         let observed = ObservedTracks::new((timed.recording, timed.clock), tracks, self.last);
-        if !observed.has_common_frames && self.every.is_none() && !self.last {
-            tell(format_args!("note: {OWN_CLOCKS} (--every; of occupancy --moments-every)"));
+        if !observed.has_common_frames && self.windows().are_all() {
+            tell(format_args!("{} (--every; of occupancy --moments-every)", Note::OwnClocks.line()));
         }
         if let Some(warning) = &observed.warning {
-            recordings::warn_of(warning);
+            tell_note(&Note::Implausible(warning.clone()));
         }
         if let Some(problem) = observed.problem() {
             bail!("{}: {problem}", self.file().display());
         }
         Ok((observed, topic))
-    }
-}
-
-/// Reports what was estimated and left out.
-pub(crate) fn tell_what_was_estimated(observed: &ObservedTracks) {
-    for line in observed.estimated() {
-        tell(format_args!("{line}"));
     }
 }
 

@@ -5,7 +5,7 @@ use crate::small_file;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Clock, ColumnChoice, Format, Homography, Recording, is_vehicle, parse_columns};
-use ddl::{RunConfig, TimedRecording, TrackUnits};
+use ddl::{Note, RunConfig, TimedRecording, TrackUnits};
 use ddl_mcap::{TrackTopic, is_log, read_log};
 use std::path::{Path, PathBuf};
 
@@ -98,7 +98,7 @@ impl Units {
 
     /// The option that gives the rate, with its value.
     pub(crate) fn rate_given(&self) -> Option<String> {
-        self.rate().rate_option()
+        self.rate().rate_setting()
     }
 
     pub(crate) fn as_options(&self) -> String {
@@ -133,14 +133,14 @@ impl Units {
         let (rows, format, topic) = self.in_metres(file)?;
         let timed = TimedRecording::new(&rows, &self.rate(), &self.remembered);
         let mut timed = timed.with_context(|| file.display().to_string())?;
-        timed.notes.extend(self.note_of_run(rows.stated_clock().is_none()));
+        timed.notes.extend(self.note_of_run(rows.stated_clock().is_none()).map(Note::Reader));
         Ok(ReadRecording { format, topic, timed })
     }
 
     /// A note about units taken from the run; `rate`: whether no file gives its rate.
     pub(crate) fn note_of_run(&self, rate: bool) -> Option<String> {
         let rate = rate && self.rate_given().is_none();
-        let rate = self.remembered.rate_option().filter(|_| rate);
+        let rate = self.remembered.rate_setting().filter(|_| rate);
         let positions = self.homography.is_none() && self.remembered.homography.is_some();
         let taken = rate.into_iter().chain(positions.then(|| "its homography".to_owned()));
         let taken: Vec<String> = taken.collect();
@@ -215,7 +215,7 @@ impl Units {
 
     /// The clock from the run, with its description.
     pub(crate) fn remembered_live_clock(&self) -> anyhow::Result<Option<(Clock, String)>> {
-        let rate = self.remembered.rate_option();
+        let rate = self.remembered.rate_setting();
         let of_run = self.remembered.clock()?.zip(rate);
         Ok(of_run.map(|(clock, rate)| (clock, format!("as in the run's training ({rate})"))))
     }

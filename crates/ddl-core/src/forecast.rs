@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::ForecastShapeError;
 use crate::pace::Pace;
 use crate::position::{HORIZON, Position};
@@ -20,7 +22,7 @@ use crate::window::Window;
 /// - certified `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds
 /// - spread `[N][12]`, in metres, of a pedestrian around the hypothesis that it follows, and pace `[N]`
 /// - familiarity `[N]`, 0 to 1: similarity of the observed motion to the training data
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Forecast {
     pedestrians: usize,
     hypotheses: usize,
@@ -37,7 +39,7 @@ pub struct Forecast {
 /// Around hypothesis `k`, `t` + 1 steps ahead, a pedestrian is distributed by Student's t in two dimensions with
 /// [`DEGREES`](Self::DEGREES) degrees of freedom; at the distance r (m) its density per square metre is
 /// `(1 + r² / (3 s²))^(-5/2) / (2 pi s²)` with the scale s.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
     /// `[N][12]`: the scales s, metres.
     pub scales: Vec<f64>,

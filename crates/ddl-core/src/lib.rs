@@ -2,6 +2,7 @@
 
 mod atomic_file;
 mod error;
+mod file_lock;
 mod forecast;
 mod forecaster;
 pub mod motion;
@@ -23,6 +24,7 @@ mod work_done;
 
 pub use atomic_file::{remove_temporary_files, write_atomically, write_atomically_with};
 pub use error::{ForecastError, ForecastShapeError, WindowError};
+pub use file_lock::FileLock;
 pub use forecast::{Forecast, Spread};
 pub use forecaster::Forecaster;
 pub use names::UnknownName;

@@ -2,12 +2,13 @@
 //! own spread, weights and regions.
 
 use crate::position::{Position, distance};
+use serde::{Deserialize, Serialize};
 
 /// Uncertainty (m) of an observation above which its pace is not known.
 const LARGEST_UNCERTAINTY: f64 = 0.3;
 
 /// The pace of an observed pedestrian, by its mean speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Pace {
     /// Below 0.15 m/s.
     Standing,

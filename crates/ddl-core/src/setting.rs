@@ -1,7 +1,7 @@
 //! The settings that messages ask for, in the words of whoever reads them.
 
 use std::fmt::{Display, Formatter, Result};
-use std::sync::OnceLock;
+use std::sync::{PoisonError, RwLock};
 
 /// A setting of the reader of a message. Libraries name the field; a program, Python or a browser says once how its
 /// users [write](word_settings) it, such as `--max-age`, `max_age=` or `maxAge`.
@@ -32,12 +32,12 @@ pub enum Setting {
 /// How users write a setting, by its name such as `max_age` and the value that it should have.
 pub type SettingWords = fn(name: &str, value: Option<&str>) -> String;
 
-static WORDS: OnceLock<SettingWords> = OnceLock::new();
+static WORDS: RwLock<Option<SettingWords>> = RwLock::new(None);
 
-/// Says how the users of this process write settings. The first call counts; without one the field is named.
+/// Says how the users of this process write settings. The last call counts, as of the program within Python; without
+/// one the field is named.
 pub fn word_settings(words: SettingWords) {
-    // A second door in one process, such as the program within Python, keeps the words of the first.
-    let _ = WORDS.set(words);
+    *WORDS.write().unwrap_or_else(PoisonError::into_inner) = Some(words);
 }
 
 impl Setting {
@@ -79,7 +79,8 @@ impl Display for Setting {
 }
 
 fn worded(name: &str, value: Option<&str>) -> String {
-    match (WORDS.get(), value) {
+    let words = *WORDS.read().unwrap_or_else(PoisonError::into_inner);
+    match (words, value) {
         (Some(words), _) => words(name, value),
         (None, Some(value)) => format!("{name} {value}"),
         (None, None) => name.to_owned(),
@@ -91,10 +92,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_words_count() {
+    fn the_last_words_count() {
         assert_eq!((Setting::MaxAge.to_string(), Setting::Fps.to(25)), ("max_age".into(), "fps 25".into()));
-        word_settings(|name, value| format!("--{}{}", name.replace('_', "-"), value.unwrap_or_default()));
         word_settings(|_, _| String::new());
+        word_settings(|name, value| format!("--{}{}", name.replace('_', "-"), value.unwrap_or_default()));
         assert_eq!((Setting::MaxAge.to_string(), Setting::Fps.to(25)), ("--max-age".into(), "--fps25".into()));
     }
 }

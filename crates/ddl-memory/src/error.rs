@@ -1,6 +1,6 @@
 //! Errors of a scene memory.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use ddl_data::LiveError;
 use thiserror::Error;
@@ -18,6 +18,19 @@ pub enum MemoryError {
          memory's frame rate"
     )]
     OtherFrameStep { memory: i64, recording: i64 },
+    #[error(
+        "the memory was made at {} frames per second ({memory} frames per step of 0.4 s), but these tracks have {} \
+         ({camera} per step): use a memory of the same frame rate, or a new file", rate(*.memory), rate(*.camera)
+    )]
+    OtherRate { camera: i64, memory: i64 },
+    #[error(
+        "{}: another process, or a watch of this process that was not closed, writes this file; wait until it is done, \
+         or choose another file",
+        .path.display()
+    )]
+    Taken { path: PathBuf },
+    #[error("{}: {error}", .path.display())]
+    InFile { path: PathBuf, error: Box<Self> },
     #[error("the capacity is {capacity} segments: it must lie in 1..={largest}")]
     Capacity { capacity: usize, largest: usize },
     #[error("cannot write {}: {source}", .path.display())]
@@ -30,4 +43,17 @@ pub enum MemoryError {
         .path.display()
     )]
     File { path: PathBuf, problem: String },
+}
+
+impl MemoryError {
+    /// The error with the file that it is about.
+    #[must_use]
+    pub fn in_file(self, path: &Path) -> Self {
+        Self::InFile { path: path.to_owned(), error: Box::new(self) }
+    }
+}
+
+/// Frames per second, from the number of frames in a step of 0.4 s.
+fn rate(frame_step: i64) -> f64 {
+    frame_step as f64 / ddl_core::TIME_STEP
 }

@@ -5,7 +5,7 @@ use crate::forecasts::{EmptyFields, parts};
 use crate::observed::{Observed, past_tracks};
 use ddl::data::{Completeness, Window};
 use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine};
-use ddl::{CertifiedForecast, Forecaster, WeightedGoals};
+use ddl::{Answer, Forecaster, WeightedGoals};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -33,7 +33,7 @@ pub(crate) fn baseline<'py>(
     };
     let window = scene.window.as_ref();
     let forecast = window.map(|window| py.detach(|| forecaster.forecast(window)));
-    let forecast = forecast.transpose().map_err(of_any)?.map(CertifiedForecast::from);
+    let forecast = forecast.transpose().map_err(of_any)?.map(Answer::from);
     let goals = goals.map(|goals| goals.shape()[1]);
     let many = if name == "angular_noise" { 20 } else { 1 };
     let empty = EmptyFields { hypotheses: goals.unwrap_or(many), goals: goals.is_some(), ..EmptyFields::default() };

@@ -4,7 +4,7 @@ use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{ensure, of_any, parsed, raised};
 use crate::forecasts::names;
 use crate::interruptible::{Stop, User, run, run_on};
-use crate::model::Model;
+use crate::model::ForecastModel;
 use crate::moments::Moments;
 use crate::recording::Recording;
 use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Window, WindowRule, locate};
@@ -190,7 +190,7 @@ impl TestSet {
 #[pyfunction]
 pub(crate) fn evaluate_model(
     py: Python<'_>,
-    model: &Model,
+    model: &ForecastModel,
     folder: Option<PathBuf>,
     protocols: Vec<String>,
     progress: Option<Py<PyAny>>,

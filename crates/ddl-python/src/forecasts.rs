@@ -4,8 +4,9 @@ use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{ensure, of_any};
 use crate::moments::Moments;
 use crate::observed::Observed;
+use crate::scene::SceneFutures;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, TIME_STEP, Window};
-use ddl::{CertifiedForecast, Forecast, Pace, RegionTable, Spread};
+use ddl::{Answer, Forecast, Pace, RegionTable, Spread};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -20,6 +21,7 @@ pub(crate) struct EmptyFields {
     pub(crate) certified: bool,
     pub(crate) regions: bool,
     pub(crate) certificates: bool,
+    pub(crate) joint: bool,
 }
 
 /// A forecast of the requested pedestrians; NaN for those that cannot be forecast.
@@ -28,10 +30,10 @@ pub(crate) struct EmptyFields {
 pub(crate) fn parts<'py>(
     py: Python<'py>,
     observed: &Observed,
-    forecast_of_window: Option<&CertifiedForecast>,
+    answer: Option<&Answer>,
     empty: EmptyFields,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let forecast = forecast_of_window.map(|certified| &certified.forecast);
+    let forecast = answer.map(Answer::forecast);
     let rows = &observed.rows;
     let (n, k) = (rows.len(), forecast.map_or(empty.hypotheses, Forecast::hypotheses));
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
@@ -59,8 +61,10 @@ pub(crate) fn parts<'py>(
     dict.set_item("certified", certified.transpose()?)?;
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
     spread_and_regions(py, rows, forecast, empty, &dict)?;
-    let has_evidence = forecast_of_window.map_or(empty.certificates, |one| !one.certificates.is_empty());
-    let evidence = has_evidence.then(|| certificates(py, forecast_of_window, rows, k));
+    let nobody = || empty.joint.then_some(SceneFutures::NOBODY);
+    dict.set_item("futures", answer.map_or_else(nobody, |answer| SceneFutures::of_rows(answer, rows)))?;
+    let has_evidence = answer.map_or(empty.certificates, |answer| !answer.certificates().is_empty());
+    let evidence = has_evidence.then(|| certificates(py, answer, rows, k));
     dict.set_item("certificates", evidence.transpose()?)?;
     Ok(dict)
 }
@@ -115,11 +119,11 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
 pub(crate) fn named_parts<'py>(
     py: Python<'py>,
     window: &Window,
-    forecast_of_window: &CertifiedForecast,
+    answer: &Answer,
     moments: Moments,
 ) -> PyResult<Bound<'py, PyDict>> {
     let observed = Observed::of_window(window.clone());
-    let dict = parts(py, &observed, Some(forecast_of_window), EmptyFields::default())?;
+    let dict = parts(py, &observed, Some(answer), EmptyFields::default())?;
     dict.set_item("ids", names(py, window)?)?;
     let last = window.frames()[OBSERVED - 1];
     let ahead = (1..=HORIZON as i64).map(|t| last + t * window.frame_step());
@@ -143,7 +147,7 @@ pub(crate) fn names<'py>(py: Python<'py>, window: &Window) -> PyResult<Bound<'py
 
 fn certificates<'py>(
     py: Python<'py>,
-    certified: Option<&CertifiedForecast>,
+    answer: Option<&Answer>,
     rows: &[Option<usize>],
     k: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -152,14 +156,14 @@ fn certificates<'py>(
     let [mut eigenvalues, mut margins, mut angles] = [const { Vec::new() }; 3];
     for row in rows {
         for k in 0..k {
-            let Some((certified, i)) = certified.zip(*row) else {
+            let of_row = answer.zip(*row).and_then(|(answer, i)| answer.certificate(i, k));
+            let Some(certificate) = of_row else {
                 potentials.extend([f64::NAN; HORIZON + 1]);
                 for values in [&mut eigenvalues, &mut margins, &mut angles] {
                     values.push(f64::NAN);
                 }
                 continue;
             };
-            let certificate = certified.certificate(i, k);
             potentials.extend(certificate.potentials());
             eigenvalues.push(certificate.min_eigenvalue().unwrap_or(f64::NAN));
             margins.push(certificate.min_step_margin().unwrap_or(f64::NAN));

@@ -41,12 +41,12 @@ mod _core {
         forecasts::{region_radii, write_forecasts},
         goals::GoalEstimator,
         interruptible::set_num_threads,
-        live::Live,
+        live::LivePlace,
         metrics::{collisions, displacement_errors, kde_nll, mahalanobis, scores, spread_between},
-        model::Model,
+        model::ForecastModel,
         program::main,
         recording::Recording,
-        scene::{check_plans, clearances, occupancy, risks},
+        scene::SceneFutures,
         soft_dtw::{SearchIndex, value, value_and_gradient},
     };
 
@@ -54,6 +54,13 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        // A door says how its users write settings: `max_age`, `fps=25`, `columns="frame=NAME"`.
+        ddl::word_settings(|name, value| {
+            value.map_or(name.to_owned(), |value| match value.parse::<f64>() {
+                Ok(_) => format!("{name}={value}"),
+                Err(_) => format!("{name}={value:?}"),
+            })
+        });
         module.add("UNFAMILIAR", ddl::UNFAMILIAR_THRESHOLD)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

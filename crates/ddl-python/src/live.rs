@@ -4,10 +4,10 @@ use crate::arrays::points;
 use crate::errors::{ensure, of_any, parsed, raised};
 use crate::forecasts::named_parts;
 use crate::interruptible::{User, run_on, wait_for};
-use crate::model::Model;
+use crate::model::ForecastModel;
 use crate::moments::{Moments, clock_of_rate};
-use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, PedestrianNames, Position, TimeUnit, Window};
-use ddl::{AdaptiveRegions, CertifiedForecast, Ddl, DdlError, LiveForecaster, MemoryFile};
+use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, PedestrianNames, TimeUnit};
+use ddl::{Ddl, DdlError, Note, Request, Session, SessionMemory, WindowOptions};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -16,99 +16,50 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-#[pyclass(frozen, module = "ddl_forecast._core")]
-pub(crate) struct Live {
-    place: SharedPlace,
+#[pyclass(frozen, name = "Live", module = "ddl_forecast._core")]
+pub(crate) struct LivePlace {
+    session: SharedSession,
     clock: Clock,
 }
 
 /// `None` while a call uses the state. No lock is held during a forecast, so a worker thread never waits for its own
 /// lock.
-type SharedPlace = Arc<Mutex<Option<Box<WatchedPlace>>>>;
-
-struct WatchedPlace {
-    live: LiveForecaster<Arc<Ddl>>,
-    file: Option<MemoryFile>,
-    certificates: bool,
-    joint: bool,
-}
-
-/// The answer to a frame.
-struct Answer {
-    /// `None` without pedestrians to forecast.
-    forecast: Option<(Window, CertifiedForecast)>,
-    /// The pedestrians whose position does not fit their track, with its distance (m) from where it was expected.
-    misfits: Vec<(i64, f64, String)>,
-    /// An error if the memory could not be written.
-    unwritten: Option<String>,
-}
-
-impl WatchedPlace {
-    fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
-        let forecast = if self.joint {
-            self.live.push_joint(frame, seen, None)?.map(|now| (now.window, now.forecast.into()))
-        } else if self.certificates {
-            self.live.push_certified(frame, seen)?.map(|now| (now.window, now.forecast))
-        } else {
-            self.live.push(frame, seen)?.map(|now| (now.window, now.forecast.into()))
-        };
-        // The frame has been observed, so a full disk must not discard its forecast.
-        let written = MemoryFile::write_if_due(self.file.as_mut(), self.live.place());
-        let unwritten = written.err().map(|error| error.to_string());
-        let tracks = self.live.tracks();
-        let misfits = tracks.misfits().iter();
-        let misfits = misfits.map(|misfit| {
-            let when = tracks.clock().words(misfit.tick);
-            (misfit.pedestrian.0, misfit.distance, when)
-        });
-        Ok(Answer { forecast, misfits: misfits.collect(), unwritten })
-    }
-
-    /// Writes the memory; on success, closes its file.
-    fn close(&mut self) -> Result<Option<String>, DdlError> {
-        let warning = match (&mut self.file, self.live.place()) {
-            (Some(file), Some(place)) => file.end(place.clone())?,
-            _ => None,
-        };
-        self.file = None;
-        Ok(warning)
-    }
-}
+type SharedSession = Arc<Mutex<Option<Box<Session<Arc<Ddl>>>>>>;
 
 /// Exclusive use of the state. Dropping it returns the state, even after a panic or an interrupted call.
-struct Turn {
-    slot: SharedPlace,
-    watching: Option<Box<WatchedPlace>>,
+struct SessionTurn {
+    slot: SharedSession,
+    session: Option<Box<Session<Arc<Ddl>>>>,
 }
 
-impl Turn {
+impl SessionTurn {
     /// Waits until other calls have returned the state.
-    fn take(py: Python<'_>, slot: &SharedPlace) -> PyResult<Self> {
-        let watching = wait_for(py, || held(slot).take())?;
-        Ok(Self { slot: Arc::clone(slot), watching: Some(watching) })
+    fn take(py: Python<'_>, slot: &SharedSession) -> PyResult<Self> {
+        let session = wait_for(py, || held(slot).take())?;
+        Ok(Self { slot: Arc::clone(slot), session: Some(session) })
     }
 
     /// Never `None`: the state is present until this is dropped.
-    fn watching(&mut self) -> Option<&mut WatchedPlace> {
-        self.watching.as_deref_mut()
+    fn session(&mut self) -> Option<&mut Session<Arc<Ddl>>> {
+        self.session.as_deref_mut()
     }
 }
 
-impl Drop for Turn {
+impl Drop for SessionTurn {
     fn drop(&mut self) {
-        *held(&self.slot) = self.watching.take();
+        *held(&self.slot) = self.session.take();
     }
 }
 
-fn held(slot: &SharedPlace) -> MutexGuard<'_, Option<Box<WatchedPlace>>> {
+fn held(slot: &SharedSession) -> MutexGuard<'_, Option<Box<Session<Arc<Ddl>>>>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[pymethods]
-impl Live {
+impl LivePlace {
     #[new]
     fn new(
-        model: &Model,
+        model: &ForecastModel,
         fps: Option<f64>,
         memory: Option<PathBuf>,
         whole: bool,
@@ -117,27 +68,21 @@ impl Live {
         certificates: bool,
         joint: bool,
     ) -> PyResult<Self> {
-        ensure!(
-            !(joint && certificates),
-            "live joint futures have no certificates: leave out one of joint and certificates"
-        );
         let clock = match fps {
             Some(fps) => clock_of_rate(fps)?,
             None => Clock::with_stamps(TimeUnit::Seconds),
         };
-        let tracks = ddl::windows_of(LiveTracks::with_clock(clock), whole, [max_age, Some(every)], false);
-        let tracks = tracks.map_err(PyValueError::new_err)?;
-        let live = LiveForecaster::with_tracks(Arc::clone(&model.0), tracks);
-        let mut live = live.with_adaptive_regions(AdaptiveRegions::default());
-        let mut file = None;
+        let tracks = WindowOptions { whole, max_age, every: Some(every), last: false };
+        let tracks = tracks.tracks(LiveTracks::with_clock(clock)).map_err(of_any)?;
+        let request = if joint { Request::joint() } else { Request::default() };
+        let request = if certificates { request.with_certificates() } else { request };
+        let session = Session::new(Arc::clone(&model.0), tracks, request.with_adaptive_regions());
+        let mut session = session.map_err(raised)?;
         if let Some(path) = memory {
-            let (opened, read) = MemoryFile::open(&path).map_err(raised)?;
-            live = live.remembering(read).map_err(raised)?;
-            file = Some(opened);
+            let memory = SessionMemory::in_file(&path);
+            session = memory.and_then(|memory| session.remembering(memory)).map_err(raised)?;
         }
-        let watching = WatchedPlace { live, file, certificates, joint };
-        let place = Arc::new(Mutex::new(Some(Box::new(watching))));
-        Ok(Self { place, clock })
+        Ok(Self { session: Arc::new(Mutex::new(Some(Box::new(session)))), clock })
     }
 
     /// A forecast (`None` without pedestrians to forecast), the pedestrians whose positions do not fit, each with its
@@ -168,49 +113,54 @@ impl Live {
         let words = words.into_iter().map(|(id, word)| (PedestrianId(id), word.into()));
         let names = PedestrianNames::new(words.collect());
         let of_frame = names.clone();
-        let mut turn = Turn::take(py, &self.place)?;
-        let observe = move |_: &_| {
-            let watching = turn.watching()?;
-            watching.live.name(&of_frame);
-            Some(watching.observe(frame, seen))
-        };
+        let mut turn = SessionTurn::take(py, &self.session)?;
+        let observe = move |_: &_| turn.session().map(|session| session.push_named(frame, seen, &of_frame));
         let now = run_on(User::Live, py, observe, |_| Ok(()))?;
-        let Some(answer) = now.transpose().map_err(|error| wrong_frame(error, moments, &names))? else {
+        let Some(now) = now.transpose().map_err(|error| wrong_frame(error, moments, &names))? else {
             return Ok((None, Vec::new(), None));
         };
-        let parts = answer.forecast.map(|(window, forecast)| named_parts(py, &window, &forecast, moments));
-        Ok((parts.transpose()?, answer.misfits, answer.unwritten))
+        let parts = now.answer.map(|(window, answer)| named_parts(py, &window, &answer, moments));
+        let misfits = now.notes.iter().flat_map(Note::misfits);
+        let misfits = misfits.map(|noted| (noted.misfit.pedestrian.0, noted.misfit.distance, noted.when.clone()));
+        let unwritten = now.notes.iter().find_map(|note| match note {
+            Note::MemoryUnwritten(error) => Some(error.to_string()),
+            _ => None,
+        });
+        Ok((parts.transpose()?, misfits.collect(), unwritten))
     }
 
     /// Forgets all tracks; the memory is kept.
     fn clear(&self, py: Python<'_>) -> PyResult<()> {
-        let mut turn = Turn::take(py, &self.place)?;
-        if let Some(watching) = turn.watching() {
-            watching.live.clear();
+        let mut turn = SessionTurn::take(py, &self.session)?;
+        if let Some(session) = turn.session() {
+            session.clear(None);
         }
         Ok(())
     }
 
     /// Number of remembered segments; 0 without a memory.
     fn remembered(&self, py: Python<'_>) -> PyResult<usize> {
-        let mut turn = Turn::take(py, &self.place)?;
-        let place = turn.watching().and_then(|watching| watching.live.place());
+        let mut turn = SessionTurn::take(py, &self.session)?;
+        let place = turn.session().and_then(|session| session.place(None));
         Ok(place.map_or(0, |place| place.memory().segments()))
     }
 
     /// The reason why the given memory is not used; `None` if it is used.
     fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let mut turn = Turn::take(py, &self.place)?;
-        let refused = turn.watching().and_then(|watching| watching.live.place()?.refused());
-        Ok(refused.map(str::to_owned))
+        let mut turn = SessionTurn::take(py, &self.session)?;
+        let refused = turn.session().and_then(|session| session.place(None)?.refused());
+        Ok(refused.map(|refusal| refusal.to_string()))
     }
 
     /// Writes the memory and closes its file; returns a warning, if any.
     fn close(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let mut turn = Turn::take(py, &self.place)?;
-        let close = move |_: &_| turn.watching().map_or(Ok(None), WatchedPlace::close);
-        let warning = run_on(User::Live, py, close, |_| Ok(()))?;
-        warning.map_err(raised)
+        let mut turn = SessionTurn::take(py, &self.session)?;
+        let close = move |_: &_| turn.session().map(Session::close).unwrap_or_default();
+        match run_on(User::Live, py, close, |_| Ok(()))?.pop() {
+            Some(Note::MemoryFailed(error)) => Err(Arc::try_unwrap(error).map_or_else(|error| of_any(error), raised)),
+            Some(Note::MemoryUnsaved { unsaved, .. }) => Ok(Some(unsaved.to_string())),
+            _ => Ok(None),
+        }
     }
 }
 

@@ -8,12 +8,8 @@ use crate::observed::{Observed, past_tracks};
 use crate::recording::{Recording, doubt};
 use crate::scene::plan;
 use ddl::data::{Completeness, PedestrianId, Window};
-use ddl::{
-    CertifiedForecast, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource,
-    RecordingPlayer, windows_of,
-};
+use ddl::{Answer, Ddl, DdlError, DeviceChoice, GivenPlan, ModelSource, RecordingPlayer, Request, WindowOptions};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rayon::prelude::*;
@@ -23,56 +19,38 @@ use std::sync::Arc;
 /// Pedestrians that are forecast between two checks for Ctrl-C.
 const BATCH: usize = 64;
 
-#[pyclass(frozen, module = "ddl_forecast._core")]
+#[pyclass(frozen, name = "Model", module = "ddl_forecast._core")]
 #[derive(Debug)]
-pub(crate) struct Model(pub(crate) Arc<Ddl>);
+pub(crate) struct ForecastModel(pub(crate) Arc<Ddl>);
 
-/// The options of a forecast.
-#[derive(Debug, Clone)]
-struct ForecastOptions {
-    one: bool,
-    certificates: bool,
-    joint: bool,
-    given: Option<GivenPlan>,
+/// The request of these options.
+fn request(model: &Ddl, samples: usize, certificates: bool, joint: bool) -> PyResult<Request> {
+    let hypotheses = model.goal_model().clusters();
+    ensure!(
+        samples == 1 || samples == hypotheses,
+        "samples must be {hypotheses} (all hypotheses of the model) or 1 (its central forecast); found {samples}. \
+             Weights and regions belong to all {hypotheses}; for fewer, select those with the largest weights"
+    );
+    ensure!(!joint || samples != 1, "joint futures are of all hypotheses: leave out samples=1");
+    let request = match (joint, samples) {
+        (true, _) => Request::joint(),
+        (false, 1) => Request::one(),
+        _ => Request::default(),
+    };
+    Ok(if certificates { request.with_certificates() } else { request })
 }
 
-impl ForecastOptions {
-    fn new(model: &Ddl, samples: usize, certificates: bool, joint: bool) -> PyResult<Self> {
-        let hypotheses = model.goal_model().clusters();
-        ensure!(
-            samples == 1 || samples == hypotheses,
-            "samples must be {hypotheses} (all hypotheses of the model) or 1 (its central forecast); found \
-                 {samples}. Weights and regions belong to all {hypotheses}; for fewer, select those with the largest \
-                 weights"
-        );
-        ensure!(!joint || samples != 1, "joint futures are of all hypotheses: leave out samples=1");
-        Ok(Self { one: samples == 1, certificates, joint, given: None })
+/// Answers for the windows in batches of pedestrians; stops between batches if the caller was interrupted.
+fn answers_until(model: &Ddl, windows: &[Window], request: &Request, stop: &Stop) -> Result<Vec<Answer>, DdlError> {
+    let mut answers = Vec::with_capacity(windows.len());
+    for some in Window::parts(windows, BATCH).take_while(|_| !stop.is_asked()) {
+        answers.extend(model.forecast(some, request)?);
     }
-
-    fn forecast(&self, model: &Ddl, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
-        let plain = |forecasts: Vec<ddl::Forecast>| forecasts.into_iter().map(Into::into).collect();
-        match (self.joint, self.certificates, self.one) {
-            (true, true, _) => model.forecast_scenes_certified(windows),
-            (true, false, _) => model.forecast_scenes(windows, self.given.as_ref()).map(plain),
-            (false, false, false) => model.forecast_all(windows).map(plain),
-            (false, false, true) => model.forecast_central(windows).map(plain),
-            (false, true, false) => model.forecast_certified(windows),
-            (false, true, true) => model.forecast_central_certified(windows),
-        }
-    }
-
-    /// Forecasts the windows in batches of pedestrians; stops between batches if the caller was interrupted.
-    fn forecast_until(&self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<CertifiedForecast>, DdlError> {
-        let mut forecasts = Vec::with_capacity(windows.len());
-        for some in Window::parts(windows, BATCH).take_while(|_| !stop.is_asked()) {
-            forecasts.extend(self.forecast(model, some)?);
-        }
-        Ok(forecasts)
-    }
+    Ok(answers)
 }
 
 #[pymethods]
-impl Model {
+impl ForecastModel {
     /// The built-in model of that name, or the model at that path.
     #[staticmethod]
     fn open(py: Python<'_>, name: PathBuf) -> PyResult<Self> {
@@ -119,10 +97,10 @@ impl Model {
         joint: bool,
         given: Option<(PyReadonlyArray2<'py, f64>, Option<i64>)>,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
-        let mut options = ForecastOptions::new(&self.0, samples, certificates, joint)?;
+        let mut request = request(&self.0, samples, certificates, joint)?;
         if let Some((rows, ego)) = given {
             let (plan, ego) = (plan(&rows)?, ego.map(|row| PedestrianId(row).into()));
-            options.given = Some(GivenPlan { plan, ego });
+            request = Request::given(GivenPlan { plan, ego });
         }
         let completeness = Completeness::of(whole);
         let pasts = past.iter().map(past_tracks).collect::<PyResult<Vec<_>>>()?;
@@ -133,13 +111,14 @@ impl Model {
         })?;
         let scenes = scenes.map_err(of_any)?;
         let windows: Vec<Window> = scenes.iter().filter_map(|scene| scene.window.clone()).collect();
-        let mut forecasts = self.forecasts(py, options, windows)?.into_iter();
+        let mut forecasts = self.answers(py, request, windows)?.into_iter();
         let empty = EmptyFields {
             hypotheses: if samples == 1 { 1 } else { self.hypotheses() },
             goals: self.0.config().star.variant.uses_goal(),
             certified: self.0.config().star.variant.dynamics() || samples == 1,
             regions: samples > 1,
             certificates,
+            joint,
         };
         let of_scene = |scene: &Observed| {
             let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
@@ -164,10 +143,10 @@ impl Model {
         certificates: bool,
         joint: bool,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
-        let options = ForecastOptions::new(&self.0, samples, certificates, joint)?;
-        let tracks = windows_of(recording.tracks.live_tracks(), whole, [max_age, every], last);
-        let observed = recording.observed(py, tracks.map_err(PyValueError::new_err)?, last)?;
-        let forecasts = self.forecasts(py, options, observed.windows.clone())?;
+        let request = request(&self.0, samples, certificates, joint)?;
+        let tracks = WindowOptions { whole, max_age, every, last }.tracks(recording.tracks.live_tracks());
+        let observed = recording.observed(py, tracks.map_err(of_any)?, last)?;
+        let forecasts = self.answers(py, request, observed.windows.clone())?;
         let pairs = observed.windows.iter().zip(&forecasts);
         let forecasts = pairs.map(|(window, forecast)| named_parts(py, window, forecast, recording.moments));
         Ok((forecasts.collect::<PyResult<_>>()?, doubt(&observed)))
@@ -221,26 +200,18 @@ impl Model {
             recording: &recording.tracks,
             windows: &observed.windows,
             most: most.max(1),
-            joint,
         };
-        let options = ForecastOptions::new(&self.0, self.hypotheses(), false, joint)?;
-        let forecasts = self.forecasts(py, options, player.shown())?;
-        let forecasts: Vec<_> = forecasts.iter().map(|one| &one.forecast).collect();
+        let request = request(&self.0, self.hypotheses(), false, joint)?;
+        let answers = self.answers(py, request, player.shown())?;
         let (name, clock) = (recording.tracks.name(), recording.moments.clock);
-        let page = player.to_html(&forecasts, name, observed.warning.as_ref(), clock).map_err(raised)?;
+        let page = player.to_html(&answers, name, observed.warning.as_ref(), clock).map_err(raised)?;
         Ok((page, doubt))
     }
 }
 
-impl Model {
-    fn forecasts(
-        &self,
-        py: Python<'_>,
-        options: ForecastOptions,
-        windows: Vec<Window>,
-    ) -> PyResult<Vec<CertifiedForecast>> {
+impl ForecastModel {
+    fn answers(&self, py: Python<'_>, request: Request, windows: Vec<Window>) -> PyResult<Vec<Answer>> {
         let model = Arc::clone(&self.0);
-        let forecasts = run(py, move |stop| options.forecast_until(&model, &windows, stop))?;
-        forecasts.map_err(raised)
+        run(py, move |stop| answers_until(&model, &windows, &request, stop))?.map_err(raised)
     }
 }

@@ -46,7 +46,8 @@ fn on_clock(rows: Tracks, fps: Option<f64>, frame_step: Option<i64>) -> PyResult
     let given = TrackUnits { fps, frame_step, ..TrackUnits::default() };
     let timed = TimedRecording::new(&rows, &given, &TrackUnits::default()).map_err(raised)?;
     let stated = rows.stated_frame_time().filter(|_| !is_given).map(f64::recip);
-    let (clock, tracks) = (timed.clock, Arc::new(timed.recording.with_notes(timed.notes)));
+    let notes = timed.notes.iter().map(ToString::to_string).collect();
+    let (clock, tracks) = (timed.clock, Arc::new(timed.recording.with_notes(notes)));
     let is_same = unit.is_some() || clock.counts_frames();
     Ok(Recording {
         rows: if is_same { Arc::clone(&tracks) } else { Arc::new(rows) },
@@ -59,7 +60,7 @@ fn on_clock(rows: Tracks, fps: Option<f64>, frame_step: Option<i64>) -> PyResult
 /// What is doubtful or missing in the windows of a recording.
 pub(crate) fn doubt(observed: &ObservedTracks) -> Option<String> {
     let doubts = observed.misfits().into_iter().chain(observed.never_forecast());
-    let doubts: Vec<String> = doubts.collect();
+    let doubts: Vec<String> = doubts.map(|note| note.to_string()).collect();
     (!doubts.is_empty()).then(|| doubts.join("; "))
 }
 

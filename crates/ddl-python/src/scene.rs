@@ -1,23 +1,20 @@
-//! Plans, their risk, and occupancy, from the arrays of joint futures.
+//! Plans, their risk, and occupancy, of joint futures.
 
-use crate::arrays::{Paths, array, flat, forecast, tracks};
+use crate::arrays::{array, flat};
 use crate::errors::{ensure, not_negative, of_any};
 use crate::interruptible::run;
-use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, TIME_STEP, Window};
+use ddl::Answer;
+use ddl::data::HORIZON;
 use ddl::scene::{Area, Futures, Occupancy, Plan, PlanPoint};
-use ddl::{Pace, Spread};
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
+use numpy::{PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::sync::Arc;
 
-/// Observed positions and the deviations of the last, paths, weights and spread of a joint forecast.
-type JointArrays<'py> = (
-    PyReadonlyArray3<'py, f64>,
-    PyReadonlyArray1<'py, f64>,
-    Paths<'py>,
-    PyReadonlyArray2<'py, f64>,
-    PyReadonlyArray2<'py, f64>,
-);
+/// Joint futures of the pedestrians that were asked for; `None` if none of them can be forecast.
+#[pyclass(frozen, name = "Futures", module = "ddl_forecast._core")]
+#[derive(Debug, Clone)]
+pub(crate) struct SceneFutures(Option<Arc<Futures>>);
 
 /// A plan of the rows t, x, y and radius.
 pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
@@ -32,105 +29,112 @@ pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
     Plan::new(points.map(point).collect()).map_err(of_any)
 }
 
-fn futures((past, deviations, paths, weights, spread): &JointArrays<'_>) -> PyResult<Futures> {
-    let observed = tracks("past", past, OBSERVED, false)?;
-    let ids = (0..observed.len() as i64).map(PedestrianId).collect();
-    let paces = observed.iter().map(|track| Pace::of(track, TIME_STEP, 0.0)).collect();
-    let quality = |&deviation: &f64| ObservationQuality { deviation, ..ObservationQuality::default() };
-    let qualities = flat("deviation", deviations)?.iter().map(quality).collect();
-    let window = Window::new("arrays", 0, 1, ids, observed).map_err(of_any)?.with_qualities(qualities);
-    let spread =
-        Spread { scales: flat("spread", spread)?.to_vec(), paces, regions: ddl::region_table().clone().into() };
-    let forecast = forecast(paths, Some(weights), None)?.with_spread(spread).map_err(of_any)?;
-    Futures::new(&window, forecast).map_err(of_any)
+impl SceneFutures {
+    /// Those of the pedestrians in these rows; `None` for an answer of each pedestrian alone, or without spread.
+    pub(crate) fn of_rows(answer: &Answer, rows: &[Option<usize>]) -> Option<Self> {
+        let futures = answer.futures().ok()?;
+        futures.forecast().regions()?;
+        let rows: Vec<usize> = rows.iter().copied().flatten().collect();
+        Some(Self((!rows.is_empty()).then(|| Arc::new(futures.of_pedestrians(&rows)))))
+    }
+
+    pub(crate) const NOBODY: Self = Self(None);
 }
 
-/// Checks the plans of a forecast that holds no pedestrian, whose risk is 0 without a computation.
-#[pyfunction]
-pub(crate) fn check_plans(plans: Vec<PyReadonlyArray2<'_, f64>>, within: f64) -> PyResult<()> {
-    not_negative("within", within)?;
-    plans.iter().try_for_each(|rows| plan(rows).map(drop))
+fn plans_of(plans: &[PyReadonlyArray2<'_, f64>]) -> PyResult<Vec<Plan>> {
+    plans.iter().map(plan).collect()
 }
 
-/// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step
-/// and until its end `(p, 12)`.
-#[pyfunction]
-pub(crate) fn risks<'py>(
-    py: Python<'py>,
-    joint: JointArrays<'py>,
-    plans: Vec<PyReadonlyArray2<'py, f64>>,
-    within: f64,
-    ego: Option<usize>,
-    seen: bool,
-) -> PyResult<[Py<PyAny>; 4]> {
-    let futures = futures(&joint)?;
-    let plans = plans.iter().map(plan).collect::<PyResult<Vec<_>>>()?;
-    let (count, people) = (plans.len(), futures.pedestrians());
-    let risks =
-        run(
-            py,
-            move |_| {
-                if seen { futures.risks_if_seen(&plans, within, ego) } else { futures.risks(&plans, within, ego) }
-            },
-        )?;
-    let risks = risks.map_err(of_any)?;
-    let of_each = risks.iter().flat_map(|risk| risk.pedestrians.clone());
-    Ok([
-        array(py, risks.iter().map(|risk| risk.total).collect(), [count])?,
-        array(py, of_each.collect(), [count, people])?,
-        array(py, risks.iter().flat_map(|risk| risk.steps).collect(), [count, HORIZON])?,
-        array(py, risks.iter().flat_map(|risk| risk.until).collect(), [count, HORIZON])?,
-    ])
-}
+#[pymethods]
+impl SceneFutures {
+    /// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step
+    /// and until its end `(p, 12)`.
+    fn risks<'py>(
+        &self,
+        py: Python<'py>,
+        plans: Vec<PyReadonlyArray2<'py, f64>>,
+        within: f64,
+        ego: Option<usize>,
+        seen: bool,
+    ) -> PyResult<[Py<PyAny>; 4]> {
+        not_negative("within", within)?;
+        let plans = plans_of(&plans)?;
+        let count = plans.len();
+        let Some(futures) = self.0.clone() else {
+            let none = |width: usize| array(py, vec![0.0; count * width], [count, width]);
+            return Ok([array(py, vec![0.0; count], [count])?, none(0)?, none(HORIZON)?, none(HORIZON)?]);
+        };
+        let people = futures.pedestrians();
+        let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
+        let risks = run(py, move |_| risks(&futures, &plans, within, ego))?.map_err(of_any)?;
+        let of_each = risks.iter().flat_map(|risk| risk.pedestrians.clone());
+        Ok([
+            array(py, risks.iter().map(|risk| risk.total).collect(), [count])?,
+            array(py, of_each.collect(), [count, people])?,
+            array(py, risks.iter().flat_map(|risk| risk.steps).collect(), [count, HORIZON])?,
+            array(py, risks.iter().flat_map(|risk| risk.until).collect(), [count, HORIZON])?,
+        ])
+    }
 
-/// For p plans: the expected least distance `(p,)`, and that of each pedestrian `(p, n)`.
-#[pyfunction]
-pub(crate) fn clearances<'py>(
-    py: Python<'py>,
-    joint: JointArrays<'py>,
-    plans: Vec<PyReadonlyArray2<'py, f64>>,
-) -> PyResult<[Py<PyAny>; 2]> {
-    let futures = futures(&joint)?;
-    let plans = plans.iter().map(plan).collect::<PyResult<Vec<_>>>()?;
-    let (count, people) = (plans.len(), futures.pedestrians());
-    let clearances = run(py, move |_| futures.clearances(&plans))?.map_err(of_any)?;
-    let of_each = clearances.iter().flat_map(|clearance| clearance.pedestrians.clone());
-    let nearest = clearances.iter().map(|clearance| clearance.nearest);
-    Ok([array(py, nearest.collect(), [count])?, array(py, of_each.collect(), [count, people])?])
-}
+    /// For p plans: the expected least distance `(p,)`, and that of each pedestrian `(p, n)`.
+    fn clearances<'py>(&self, py: Python<'py>, plans: Vec<PyReadonlyArray2<'py, f64>>) -> PyResult<[Py<PyAny>; 2]> {
+        let plans = plans_of(&plans)?;
+        let count = plans.len();
+        let Some(futures) = self.0.clone() else {
+            let nobody = array(py, Vec::<f64>::new(), [count, 0])?;
+            return Ok([array(py, vec![f64::INFINITY; count], [count])?, nobody]);
+        };
+        let people = futures.pedestrians();
+        let clearances = run(py, move |_| futures.clearances(&plans))?.map_err(of_any)?;
+        let of_each = clearances.iter().flat_map(|clearance| clearance.pedestrians.clone());
+        let nearest = clearances.iter().map(|clearance| clearance.nearest);
+        Ok([array(py, nearest.collect(), [count])?, array(py, of_each.collect(), [count, people])?])
+    }
 
-/// Probabilities `(times, height, width)`, times, and the lowest corner, of an area or of all paths and a margin.
-#[pyfunction]
-pub(crate) fn occupancy<'py>(
-    py: Python<'py>,
-    joint: JointArrays<'py>,
-    options: (f64, f64, f64, f64),
-    area: Option<[f64; 4]>,
-) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2])> {
-    let (cell, every, radius, margin) = options;
-    let futures = (joint.0.shape()[0] > 0).then(|| futures(&joint)).transpose()?;
-    let area = match (area, &futures) {
-        (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
-        (None, Some(futures)) => futures.area(margin, cell),
-        (None, None) => return Err(PyValueError::new_err("no pedestrian could be forecast: give area=")),
-    };
-    not_negative("radius", radius)?;
-    let area = area.map_err(of_any)?;
-    let times = Occupancy::every(every).map_err(of_any)?;
-    area.ensure_kept(times.len()).map_err(of_any)?;
-    let [width, height] = area.size();
-    let grids = run(py, {
-        let times = times.clone();
-        move |stop| {
-            let Some(futures) = futures else {
-                return Ok(vec![0.0; times.len() * width * height]);
-            };
-            let grids = futures.occupancy(&area, &times, radius)?;
-            let grids = grids.take_while(|_| !stop.is_asked());
-            Ok(grids.flat_map(|grid| grid.probabilities).collect::<Vec<f32>>())
-        }
-    })?;
-    let grids: Vec<f32> = grids.map_err(|error: ddl::scene::SceneError| of_any(error))?;
-    let grids = array(py, grids, [times.len(), height, width])?;
-    Ok((grids, times, area.origin()))
+    /// Probabilities `(times, height, width)`, times, and the lowest corner, of an area or of all paths and a margin.
+    fn occupancy<'py>(
+        &self,
+        py: Python<'py>,
+        options: (f64, f64, f64, f64),
+        area: Option<[f64; 4]>,
+    ) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2])> {
+        let (cell, every, radius, margin) = options;
+        let futures = self.0.clone();
+        let area = match (area, &futures) {
+            (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
+            (None, Some(futures)) => futures.area(margin, cell),
+            (None, None) => return Err(PyValueError::new_err("no pedestrian could be forecast: give area=")),
+        };
+        not_negative("radius", radius)?;
+        let area = area.map_err(of_any)?;
+        let times = Occupancy::every(every).map_err(of_any)?;
+        area.ensure_kept(times.len()).map_err(of_any)?;
+        let [width, height] = area.size();
+        let grids = run(py, {
+            let times = times.clone();
+            move |stop| {
+                let Some(futures) = futures else {
+                    return Ok(vec![0.0; times.len() * width * height]);
+                };
+                let grids = futures.occupancy(&area, &times, radius)?;
+                let grids = grids.take_while(|_| !stop.is_asked());
+                Ok(grids.flat_map(|grid| grid.probabilities).collect::<Vec<f32>>())
+            }
+        })?;
+        let grids: Vec<f32> = grids.map_err(|error: ddl::scene::SceneError| of_any(error))?;
+        let grids = array(py, grids, [times.len(), height, width])?;
+        Ok((grids, times, area.origin()))
+    }
+
+    /// How a pickle makes it again.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Option<String>,))> {
+        let json = self.0.as_deref().map(serde_json::to_string).transpose().map_err(of_any)?;
+        Ok((py.get_type::<Self>().getattr("of_json")?, (json,)))
+    }
+
+    #[staticmethod]
+    fn of_json(json: Option<&str>) -> PyResult<Self> {
+        let futures = json.map(serde_json::from_str).transpose().map_err(of_any)?;
+        Ok(Self(futures.map(Arc::new)))
+    }
 }

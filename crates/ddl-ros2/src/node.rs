@@ -3,12 +3,13 @@
 use crate::graph::{self, DEPTH_OF_TRANSFORMS, Inputs, Outputs, publish, take};
 use crate::health::Health;
 use crate::options::Options;
-use crate::place::{Place, WindowForecast};
+use crate::place::WatchedPlace;
 use crate::tell;
 use crate::transforms::{Transforms, moved};
 use anyhow::{Context as _, anyhow};
-use ddl::data::{TIME_STEP, is_vehicle};
-use ddl::scene::{Area, Futures, Occupancy};
+use ddl::Answer;
+use ddl::data::{TIME_STEP, Window, is_vehicle};
+use ddl::scene::{Area, Occupancy};
 use ddl_ros::msg::{Forecasts, Header};
 use ddl_ros::{Moment, Observed, Tracks, occupancy_grid};
 use ros2_client::{Gid, MessageInfo, ROSTime, SystemTime};
@@ -25,7 +26,7 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
     ctrlc::set_handler(move || of_handler.store(true, Ordering::Relaxed))?;
     let mut forecasting = Forecasting {
         options,
-        place: Place::open(options)?,
+        place: WatchedPlace::open(options)?,
         transforms: Transforms::new(&options.frame, options.transform, options.transform_age),
         fixed_area: options.fixed_area()?,
         last_area: None,
@@ -66,12 +67,13 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
             publish(&outputs.diagnostics, report).unwrap_or_else(|error| forecasting.health.fault(&error));
         }
     }
-    forecasting.place.close()
+    forecasting.place.close();
+    Ok(())
 }
 
 struct Forecasting<'a> {
     options: &'a Options,
-    place: Place,
+    place: WatchedPlace,
     transforms: Transforms,
     /// The area of all grids; without it, that of the last ones.
     fixed_area: Option<Area>,
@@ -107,13 +109,11 @@ impl Forecasting<'_> {
 
     fn answer(&mut self, outputs: &Outputs) -> anyhow::Result<()> {
         match self.place.forecast()? {
-            Some((header, Some(forecast))) => self.publish(&forecast, &header, outputs)?,
+            Some((header, Some((window, answer)))) => self.publish(&window, &answer, &header, outputs)?,
             Some((header, None)) => self.publish_nobody(header, outputs)?,
             None => {}
         }
         self.health.skipped = self.place.skipped();
-        // A memory that cannot be written costs no forecast.
-        self.place.save().unwrap_or_else(|error| self.health.fault(&error));
         Ok(())
     }
 
@@ -130,9 +130,8 @@ impl Forecasting<'_> {
         Ok(())
     }
 
-    fn publish(&mut self, forecast: &WindowForecast, header: &Header, outputs: &Outputs) -> anyhow::Result<()> {
-        let ((window, forecast), joint) = (forecast, self.options.joint);
-        let moment = Moment { window, forecast, header, joint };
+    fn publish(&mut self, window: &Window, answer: &Answer, header: &Header, outputs: &Outputs) -> anyhow::Result<()> {
+        let moment = Moment { window, forecast: answer.forecast(), header, joint: answer.is_joint() };
         publish(&outputs.forecasts, moment.forecasts())?;
         if let Some(arrived) = self.arrived {
             let latency = SystemTime::now().to_nanos() - arrived.to_nanos();
@@ -145,7 +144,7 @@ impl Forecasting<'_> {
         if outputs.grids.is_empty() {
             return Ok(());
         }
-        let futures = Futures::new(window, forecast.clone())?;
+        let futures = answer.futures()?;
         let around = || futures.area(MARGIN, self.options.cell);
         let area = match (self.fixed_area.map_or_else(around, Ok), self.last_area) {
             // Somebody far away: a costmap must not keep an old grid.

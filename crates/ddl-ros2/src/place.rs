@@ -3,63 +3,47 @@
 use crate::health::Health;
 use crate::options::Options;
 use crate::tell;
-use anyhow::ensure;
-use ddl::data::{Clock, Completeness, LiveTracks, Numbering, PedestrianNames, TimeUnit, Window};
-use ddl::{
-    AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, LiveScenes, MemoryFile, ModelSource,
-    PlaceMemory,
-};
+use anyhow::{anyhow, ensure};
+use ddl::data::{Clock, Completeness, LiveTracks, Numbering, TimeUnit, Window};
+use ddl::{Answer, BuiltinModel, Ddl, DeviceChoice, ModelSource, Note, Request, SceneBatch, Session, SessionMemory};
 use ddl_ros::Observed;
 use ddl_ros::msg::Header;
 
 /// Names of pedestrians that keep their numbers.
 const MOST_NAMES: usize = 100_000;
 
-pub(crate) struct Place {
-    model: Ddl,
+pub(crate) struct WatchedPlace {
     /// One scene, without a name.
-    scenes: LiveScenes,
-    regions: AdaptiveRegions,
-    file: Option<MemoryFile>,
-    joint: bool,
+    session: Session<Ddl>,
     numbering: Numbering,
-    names: PedestrianNames,
     /// Microseconds of the last frame.
     last: Option<i64>,
-    /// The frame to forecast next, and the names in it.
-    moment: Option<(Header, PedestrianNames)>,
+    /// The frame to forecast next.
+    moment: Option<Header>,
 }
 
-/// The forecast of a frame, and the window that it is of.
-pub(crate) type WindowForecast = (Window, Forecast);
-
-impl Place {
+impl WatchedPlace {
     pub(crate) fn open(options: &Options) -> anyhow::Result<Self> {
         let device = DeviceChoice::Cpu;
         ddl::prepare(device, options.threads)?;
         let builtin = ModelSource::Builtin(BuiltinModel::default());
         let source = options.model.as_deref().map_or(builtin, ModelSource::named);
+        let every = options.rate.map_or(0.0, |rate| 1.0 / rate);
         let tracks = LiveTracks::with_clock(Clock::with_stamps(TimeUnit::Seconds))
             .with_completeness(Completeness::Partial)
             .with_max_age(options.max_age)
-            .with_interval(options.rate.map_or(0.0, |rate| 1.0 / rate));
-        let mut place = Self {
-            model: Ddl::open(&source, device)?,
-            scenes: LiveScenes::new(tracks).latest_only(),
-            regions: AdaptiveRegions::default(),
-            file: None,
-            joint: options.joint,
+            .with_interval(every);
+        let request = if options.joint { Request::joint() } else { Request::default() };
+        let mut session = Session::new(Ddl::open(&source, device)?, tracks, request.with_adaptive_regions())?;
+        if let Some(path) = &options.memory {
+            session = session.remembering(SessionMemory::in_file(path)?)?;
+        }
+        Ok(Self {
+            session: session.latest_only(),
             numbering: Numbering::remembering(MOST_NAMES),
-            names: PedestrianNames::default(),
             last: None,
             moment: None,
-        };
-        if let Some(path) = &options.memory {
-            let (file, memory) = MemoryFile::open(path)?;
-            place.scenes.remember(None, &place.model, memory)?;
-            place.file = Some(file);
-        }
-        Ok(place)
+        })
     }
 
     /// Adds a frame in fixed coordinates.
@@ -77,65 +61,46 @@ impl Place {
             health.warn(&format!(
                 "time goes back from {last} s to {time} s, and all tracks begin anew; is there a second tracker?"
             ));
-            self.regions.clear();
-            self.scenes.clear(None);
+            self.session.clear(None);
         }
-        let (seen, newer) = observed.numbered(&mut self.numbering);
-        self.scenes.observe(None, time, seen)?;
-        if let Some(why) = self.scenes.place(None).and_then(PlaceMemory::refused) {
-            health.warn(&format!("{why}; its file stays as it is"));
-        }
+        let (seen, names) = observed.numbered(&mut self.numbering);
+        let notes = self.session.observe(None, time, seen, &names)?;
         self.last = Some(time);
-        self.names = self.names.updated(&newer, |_| true);
-        let tracks = self.scenes.tracks(None);
-        if tracks.is_some_and(LiveTracks::is_moment) {
-            self.moment = Some((observed.header.clone(), newer));
+        if self.session.tracks(None).is_some_and(LiveTracks::is_moment) {
+            self.moment = Some(observed.header.clone());
         }
-        health.doubtful += tracks.map_or(0, |tracks| tracks.misfits().len());
+        for note in notes {
+            match note {
+                Note::Misfits { misfits, .. } => health.doubtful += misfits.len(),
+                // A memory that cannot be written costs no forecast.
+                Note::MemoryUnwritten(_) => health.fault(&anyhow!("{note}")),
+                note => health.warn(&note.to_string()),
+            }
+        }
         Ok(())
     }
 
     /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; no
-    /// forecast where nobody is observed well enough.
-    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<(Header, Option<WindowForecast>)>> {
-        let Some((header, names)) = self.moment.take() else {
+    /// answer where nobody is observed well enough.
+    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<(Header, Option<(Window, Answer)>)>> {
+        let Some(header) = self.moment.take() else {
             return Ok(None);
         };
-        let Some(window) = self.scenes.next_batch(LiveScenes::BATCH).windows.pop() else {
-            self.names = names;
-            return Ok(Some((header, None)));
-        };
-        // The names determine the random numbers of joint futures.
-        let window = window.with_names(self.names.clone());
-        let forecast = if self.joint {
-            let windows = std::slice::from_ref(&window);
-            self.model.forecast_scenes(windows, None)?.remove(0)
-        } else {
-            self.regions.adapt(&window, self.model.forecast(&window)?)
-        };
-        let is_kept = |id| window.pedestrians().contains(&id);
-        self.names = self.names.updated(&PedestrianNames::default(), is_kept);
-        Ok(Some((header, Some((window, forecast)))))
+        let mut batch = self.session.next_batch(SceneBatch::PEDESTRIANS);
+        let answer = self.session.answer(batch.windows())?.pop();
+        Ok(Some((header, batch.windows.pop().zip(answer))))
     }
 
     /// Number of frames that were skipped.
     pub(crate) fn skipped(&self) -> u64 {
-        self.scenes.dropped()
-    }
-
-    /// Writes the memory, if a minute has passed.
-    pub(crate) fn save(&mut self) -> anyhow::Result<()> {
-        Ok(MemoryFile::write_if_due(self.file.as_mut(), self.scenes.place(None))?)
+        self.session.waiting().dropped()
     }
 
     /// Writes the memory for the last time.
-    pub(crate) fn close(mut self) -> anyhow::Result<()> {
-        if let (Some(file), Some(place)) = (&mut self.file, self.scenes.place(None))
-            && let Some(reason) = file.end(place.clone())?
-        {
-            tell(&format!("warning: {reason}"));
+    pub(crate) fn close(mut self) {
+        for note in self.session.close() {
+            tell(&note.line());
         }
-        Ok(())
     }
 }
 
@@ -149,7 +114,7 @@ mod tests {
     #[test]
     fn tracks_begin_anew_when_time_goes_back_and_names_are_kept() {
         let (mut health, options) = (Health::default(), Options::parse_from(["node", "--rate=2"]));
-        let mut place = Place::open(&options).unwrap();
+        let mut place = WatchedPlace::open(&options).unwrap();
         // Two forecasts a second; more than 2 s back is another beginning.
         let said = [10_000, 10_400, 10_800, 10_800, 9_000, 8_000, 8_600].map(|milliseconds| {
             let mut ann = SeenPedestrian::default();

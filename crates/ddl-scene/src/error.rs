@@ -12,6 +12,13 @@ pub enum SceneError {
          futures have one weight for the whole scene; make them with the joint forecast of a model"
     )]
     NotJoint { future: usize, pedestrian: usize, expected: f64, found: f64 },
+    #[error("risk and occupancy are of joint futures; these are forecasts of each pedestrian alone")]
+    Alone,
+    #[error(
+        "the people of these futures already keep away from the plan that they were given: ask for a risk that takes \
+         plans as unseen"
+    )]
+    PlanGiven,
     #[error("a forecast without spread has no risk and no occupancy; make it with all hypotheses of a model")]
     NoSpread,
     #[error("a forecast of {found} hypotheses has no joint futures; at most {most} hypotheses: train with fewer goals")]

@@ -71,7 +71,7 @@ pub(crate) fn futures(starts: &[Position], velocities: &[Vec<Position>], weights
         paces: vec![Pace::Walking; n],
         regions: RegionTable::of(&[&[[1.0; HORIZON]; 9]; 3], &[0.5]).unwrap().into(),
     };
-    Futures::new(&window, forecast.with_spread(spread).unwrap()).unwrap()
+    Futures::new(&window, forecast.with_spread(spread).unwrap(), None).unwrap()
 }
 
 /// The same scene, whose pedestrians were seen a while ago: their positions have this deviation (m).
@@ -81,7 +81,7 @@ pub(crate) fn with_deviation(futures: &Futures, deviation: f64) -> Futures {
     let ids = (0..n).map(|i| PedestrianId(i as i64)).collect();
     let quality = ObservationQuality { deviation, ..ObservationQuality::default() };
     let window = Window::new("yard", 0, 10, ids, tracks).unwrap().with_qualities(vec![quality; n]);
-    Futures::new(&window, futures.forecast().clone()).unwrap()
+    Futures::new(&window, futures.forecast().clone(), None).unwrap()
 }
 
 /// A plan of rows of time (s), x, y and radius (m).

@@ -2,7 +2,9 @@
 
 use crate::error::SceneError;
 use crate::groups::groups;
+use crate::plan::Plan;
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, TIME_STEP, Window, between};
+use serde::{Deserialize, Serialize};
 
 /// Two pedestrians have the same weight of a future if the weights differ by at most this much.
 const EQUAL_WEIGHTS: f64 = 1e-9;
@@ -10,21 +12,22 @@ const EQUAL_WEIGHTS: f64 = 1e-9;
 /// K weighted futures of a scene of N pedestrians: in future k every pedestrian follows its hypothesis k.
 ///
 /// Around its path a pedestrian is distributed as the [spread](ddl_core::Spread) of the forecast states.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Futures {
     present: Vec<Position>,
     /// `[N]`: the scale at the moment itself, metres.
     deviations: Vec<f64>,
     groups: Vec<Vec<usize>>,
     forecast: Forecast,
+    plan: Option<Plan>,
 }
 
 impl Futures {
-    /// The futures of a joint forecast of this window.
+    /// The futures of a joint forecast of this window, whose pedestrians respond to a plan if there is one.
     ///
     /// # Errors
     /// The forecast has another number of pedestrians; the weight of a hypothesis differs between pedestrians.
-    pub fn new(window: &Window, forecast: Forecast) -> Result<Self, SceneError> {
+    pub fn new(window: &Window, forecast: Forecast, plan: Option<Plan>) -> Result<Self, SceneError> {
         if window.len() != forecast.pedestrians() {
             return Err(SceneError::Pedestrians { window: window.len(), forecast: forecast.pedestrians() });
         }
@@ -38,7 +41,7 @@ impl Futures {
         }
         let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
         let deviations = (0..window.len()).map(|i| window.quality(i).deviation).collect();
-        Ok(Self { present, deviations, groups: groups(window), forecast })
+        Ok(Self { present, deviations, groups: groups(window), forecast, plan })
     }
 
     /// [Groups](crate::groups) of pedestrians who walk together, as indices.
@@ -49,6 +52,31 @@ impl Futures {
     /// The forecast: hypothesis k of every pedestrian is future k.
     pub fn forecast(&self) -> &Forecast {
         &self.forecast
+    }
+
+    /// The futures of the given pedestrians, at least one, in the given order; an index out of range panics. The others
+    /// have shaped them, but count in no answer.
+    #[must_use]
+    pub fn of_pedestrians(&self, pedestrians: &[usize]) -> Self {
+        let place = |i: &usize| pedestrians.iter().position(|kept| kept == i);
+        let groups = self.groups.iter().map(|group| group.iter().filter_map(place).collect::<Vec<usize>>());
+        Self {
+            present: pedestrians.iter().map(|&i| self.present[i]).collect(),
+            deviations: pedestrians.iter().map(|&i| self.deviations[i]).collect(),
+            groups: groups.filter(|group| group.len() > 1).collect(),
+            forecast: self.forecast.of_pedestrians(pedestrians),
+            plan: self.plan.clone(),
+        }
+    }
+
+    /// The plan that the pedestrians respond to; `None` if they were given none.
+    pub fn plan(&self) -> Option<&Plan> {
+        self.plan.as_ref()
+    }
+
+    /// The forecast without what else is known of the scene.
+    pub fn into_forecast(self) -> Forecast {
+        self.forecast
     }
 
     /// Number of pedestrians, N.

@@ -2,9 +2,10 @@
 
 use crate::error::PlanError;
 use ddl_core::{COORDINATE_LIMIT, HORIZON, Position, TIME_STEP, between};
+use serde::{Deserialize, Serialize};
 
 /// A row of a plan.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PlanPoint {
     /// Seconds after the moment of the forecast.
     pub time: f64,
@@ -16,7 +17,7 @@ pub struct PlanPoint {
 
 /// A path over time, with straight lines between its rows. Before its first time it is at the first
 /// position, after its last time at the last position.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     points: Vec<PlanPoint>,
 }

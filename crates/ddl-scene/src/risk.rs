@@ -70,8 +70,11 @@ impl Futures {
     /// are close at the moment itself, or may be, keep the probability of that.
     ///
     /// # Errors
-    /// As [`risks`](Self::risks).
+    /// As [`risks`](Self::risks); the pedestrians were given a plan, which they respond to already.
     pub fn risks_if_seen(&self, plans: &[Plan], within: f64, ego: Option<usize>) -> Result<Vec<Risk>, SceneError> {
+        if self.plan().is_some() {
+            return Err(SceneError::PlanGiven);
+        }
         let group = ego.and_then(|ego| self.groups().iter().find(|group| group.contains(&ego)));
         let odds = |plan: &Plan| {
             let radius = plan.points().iter().map(|point| point.radius).fold(0.0, f64::max);

@@ -27,6 +27,20 @@ pub(crate) fn read<T: DeserializeOwned + Default>(value: &JsValue, of_files: &[&
     Ok(serde_json::from_value(given.into()).map_err(wrong)?)
 }
 
+/// Says how settings are written here: `maxAge`, `fps: 25`.
+pub(crate) fn word_settings() {
+    ddl::word_settings(|name, value| {
+        let mut parts = name.split('_');
+        let first = parts.next().unwrap_or_default().to_owned();
+        let capital = |part: &str| part[..1].to_uppercase() + &part[1..];
+        let name = parts.fold(first, |name, part| name + &capital(part));
+        value.map_or(name.clone(), |value| match value.parse::<f64>() {
+            Ok(_) => format!("{name}: {value}"),
+            Err(_) => format!("{name}: \"{value}\""),
+        })
+    });
+}
+
 /// JSON as an object of JavaScript.
 pub(crate) fn parse(json: &str) -> Result<JsValue, Failure> {
     js_sys::JSON::parse(json).map_err(|_| "an answer is no JSON".into())

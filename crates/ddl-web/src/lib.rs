@@ -2,6 +2,7 @@
 
 mod exchange;
 mod live;
+mod model;
 mod options;
 mod tracks;
 mod view;
@@ -9,9 +10,7 @@ mod view;
 use exchange::{Failure, answer, thrown};
 use js_sys::Uint8Array;
 use options::Options;
-use std::cell::OnceCell;
-use std::sync::Arc;
-use tracks::Tracks;
+use tracks::FileTracks;
 use wasm_bindgen::prelude::*;
 
 /// Types that wasm-bindgen cannot derive.
@@ -33,10 +32,10 @@ pub fn forecast(
     asked(options, |options| {
         let name = name.as_string().ok_or("the name of the file is no string")?;
         let bytes = bytes.dyn_ref::<Uint8Array>().ok_or("the bytes of the file are no Uint8Array")?;
-        let tracks = Tracks::read(&name, &bytes.to_vec(), &options)?;
+        let tracks = FileTracks::read(&name, &bytes.to_vec(), &options)?;
         let windows = tracks.windows(tracks.observed.windows.clone(), &options)?;
-        let forecasts = tracks::forecasts(&windows, &options)?;
-        let (lines, told) = tracks.answer(&windows, &forecasts, &options)?;
+        let answers = tracks::answers(&windows, &options)?;
+        let (lines, told) = tracks.lines(&windows, &answers, &options)?;
         answer(&told, &lines, true)
     })
 }
@@ -57,16 +56,4 @@ pub fn view(
 /// An answer by these options.
 fn asked(options: &JsValue, answer: impl FnOnce(Options) -> Result<JsValue, Failure>) -> Result<JsValue, JsError> {
     exchange::read(options, &[]).and_then(answer).map_err(|failure| thrown(&*failure))
-}
-
-/// The built-in model, loaded once.
-fn model() -> Result<Arc<ddl::Ddl>, Failure> {
-    thread_local!(static MODEL: OnceCell<Arc<ddl::Ddl>> = const { OnceCell::new() });
-    MODEL.with(|loaded| {
-        if let Some(model) = loaded.get() {
-            return Ok(Arc::clone(model));
-        }
-        let model = ddl::Ddl::builtin(ddl::BuiltinModel::World, ddl::DeviceChoice::Cpu)?;
-        Ok(Arc::clone(loaded.get_or_init(|| Arc::new(model))))
-    })
 }

@@ -1,8 +1,8 @@
 //! Options by the names of the program's, and their ranges.
 
 use crate::exchange::Failure;
-use ddl::TrackUnits;
-use ddl::data::{ColumnChoice, Homography, LiveTracks};
+use ddl::data::{ColumnChoice, Homography};
+use ddl::{Request, TrackUnits, WindowOptions};
 use serde::Deserialize;
 
 /// `Options` of `types.d.ts`.
@@ -20,8 +20,8 @@ pub(crate) struct Options {
     whole: bool,
     max_age: Option<f64>,
     every: Option<f64>,
-    pub(crate) last: bool,
-    pub(crate) joint: bool,
+    last: bool,
+    joint: bool,
     region: Vec<f64>,
     pub(crate) memory: bool,
     pub(crate) moments: Option<usize>,
@@ -47,15 +47,14 @@ impl Options {
         Ok(ColumnChoice::given(given, self.homography.is_some())?)
     }
 
-    /// These tracks with the windows that are asked for.
-    pub(crate) fn windows_of(&self, tracks: LiveTracks) -> Result<LiveTracks, Failure> {
-        let windows = ddl::windows_of(tracks, self.whole, [self.max_age, self.every], self.last);
-        Ok(windows.map_err(|problem| problem.replace("max_age", "maxAge"))?)
+    pub(crate) fn windows(&self) -> WindowOptions {
+        WindowOptions { whole: self.whole, max_age: self.max_age, every: self.every, last: self.last }
     }
 
-    /// Whether every moment is to be forecast, as the file has them.
-    pub(crate) fn are_all(&self) -> bool {
-        self.every.is_none() && !self.last
+    /// What is asked of the model.
+    pub(crate) fn request(&self) -> Result<Request, Failure> {
+        let request = if self.joint { Request::joint() } else { Request::default() };
+        Ok(if self.regions()?.is_empty() { request } else { request.with_adaptive_regions() })
     }
 
     /// Probabilities of regions.

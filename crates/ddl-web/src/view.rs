@@ -1,9 +1,9 @@
 //! What the page shows of a file.
 
 use crate::exchange::{Failure, parse};
-use crate::model;
+use crate::model::model;
 use crate::options::Options;
-use crate::tracks::{self, Tracks};
+use crate::tracks::{self, FileTracks};
 use ddl::RecordingPlayer;
 use ddl::data::Summary;
 use serde::Serialize;
@@ -24,22 +24,20 @@ struct View {
 
 /// The page of `ddl view` with its forecasts as JSON lines, a picture of the place, and what the program tells.
 pub(crate) fn view(name: &str, bytes: &[u8], options: &Options) -> Result<JsValue, Failure> {
-    let tracks = Tracks::read(name, bytes, options)?;
+    let tracks = FileTracks::read(name, bytes, options)?;
     let (observed, model) = (&tracks.observed, model()?);
     let player = RecordingPlayer {
         model: &model,
         recording: &observed.recording,
         windows: &observed.windows,
         most: options.moments.unwrap_or(MOMENTS).max(1),
-        joint: options.joint,
     };
     let windows = tracks.windows(player.shown(), options)?;
-    let forecasts = tracks::forecasts(&windows, options)?;
-    let every: Vec<_> = forecasts.iter().collect();
-    let (lines, notes) = tracks.answer(&windows, &forecasts, options)?;
+    let answers = tracks::answers(&windows, options)?;
+    let (lines, notes) = tracks.lines(&windows, &answers, options)?;
     let view = View {
         data: observed.recording.summary(),
-        page: player.to_html(&every, name, observed.warning.as_ref(), observed.clock)?,
+        page: player.to_html(&answers, name, observed.warning.as_ref(), observed.clock)?,
         place: tracks.place()?,
         notes,
         lines,

@@ -9,7 +9,7 @@
 
 use ddl::data::{Format, OBSERVED, WindowRule, read_recording};
 use ddl::report::figure;
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Request};
 use std::error::Error;
 use std::path::Path;
 
@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .find(|window| window.frames()[OBSERVED - 1] == frame)
         .ok_or("no pedestrian was observed for 8 steps before this frame and 12 after it")?;
-    let forecast = model.forecast(&window.without_future())?;
-    std::fs::write(picture, figure::scene(window, &forecast)?)?;
+    let answers = model.forecast(&[window.without_future()], &Request::default())?;
+    std::fs::write(picture, figure::scene(window, answers[0].forecast())?)?;
     Ok(())
 }

@@ -1,6 +1,7 @@
 //! The errors of the crate.
 
-use std::path::PathBuf;
+use ddl_core::Setting;
+use std::path::{Path, PathBuf};
 
 /// An error and its causes, each once.
 pub fn with_causes(error: &dyn std::error::Error) -> String {
@@ -26,13 +27,16 @@ pub enum DdlError {
     Live(#[from] ddl_data::LiveError),
     #[error(transparent)]
     Clock(#[from] ddl_data::ClockError),
-    #[error("the rows have times, and {option} gives a rate: leave it out")]
-    Rate { option: String },
-    #[error(
-        "the memory was made at {} frames per second ({memory} frames per step of 0.4 s), but these tracks have {} \
-         ({camera} per step): use a memory of the same frame rate, or a new file", rate(*.memory), rate(*.camera)
-    )]
-    MemoryFrameStep { camera: i64, memory: i64 },
+    #[error("the rows have times, and {given} gives a rate: leave it out")]
+    Rate { given: String },
+    #[error(transparent)]
+    Windows(#[from] crate::tracks::windows::OutOfGap),
+    #[error("the moment is {0}; it must be a number of seconds below 9e9, or with a rate a frame number below 2^53")]
+    Moment(f64),
+    #[error("at {at}{}: {error}", if *.is_time { " s (frames are microseconds)" } else { "" })]
+    At { at: f64, is_time: bool, error: Box<Self> },
+    #[error("{}", memory_of_scenes(path, *.is_folder))]
+    MemoryOfScenes { path: PathBuf, is_folder: bool },
     #[error(
         "another scene would be more than {limit}; a scene is forgotten when no frame of it has come for {minutes} \
          minutes: \
@@ -106,18 +110,25 @@ pub enum DdlError {
     Interrupted,
 }
 
-/// Frames per second, from the number of frames in a step of 0.4 s.
-fn rate(frame_step: i64) -> f64 {
-    frame_step as f64 / ddl_core::TIME_STEP
+fn memory_of_scenes(path: &Path, is_folder: bool) -> String {
+    let path = path.display();
+    if is_folder {
+        format!("{path} is a folder, and the frames name no scenes; name a file, or name the scenes")
+    } else {
+        format!(
+            "{path} is a file of one place, and the frames name scenes; name a folder that is there, for a file of each \
+             scene"
+        )
+    }
 }
 
 /// Advice for a validation part without windows, given the number of recordings.
 pub(crate) fn more_for_validation(recordings: usize) -> String {
     let whole = match recordings {
-        0 | 1 => "",
-        _ => ", or whole recordings (--validation-recordings NAME)",
+        0 | 1 => String::new(),
+        _ => format!(", or whole recordings ({})", Setting::ValidationRecordings.to("NAME")),
     };
-    format!("a larger share, such as --validation 0.4{whole}")
+    format!("a larger share, such as {}{whole}", Setting::Validation.to(0.4))
 }
 
 impl DdlError {

@@ -1,7 +1,9 @@
 //! From goals to forecasts: the paths that the network shapes, and their certificates.
 
+pub(crate) mod answer;
 pub(crate) mod certified;
 pub(crate) mod joint;
 pub(crate) mod name;
+pub(crate) mod request;
 pub(crate) mod shaped;
 pub(crate) mod walk;

@@ -4,7 +4,7 @@
 //! ## Guarantees
 //!
 //! - Every hypothesis of a variant with dynamics approaches its goal at every step: the network shapes the metric,
-//!   [`dynamics::StableEuler`] integrates in `f64`, and [`Ddl::forecast_certified`] returns the certificates. The
+//!   [`dynamics::StableEuler`] integrates in `f64`, and a [`Request`] with certificates returns the evidence. The
 //!   protocol `published` integrates with plain Euler steps, which overshoot; it exists to reproduce published numbers.
 //! - A run is one directory. Every file is written under a temporary name and renamed. A run refuses to resume under
 //!   another configuration. A resumed run ends with the same weights, bit for bit, as an uninterrupted one on the same
@@ -26,6 +26,7 @@ mod forecast;
 mod goals;
 mod live;
 mod model;
+mod note;
 mod run;
 mod tracks;
 #[cfg(feature = "training")]
@@ -51,18 +52,21 @@ pub use ddl_core::WorkDone;
 pub use ddl_core::{
     AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, Pace, RegionTable, Spread, WeightedGoals,
 };
+pub use ddl_core::{Setting, word_settings};
 pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{cuda_status, prepare, thread_pool};
 pub use error::{DdlError, with_causes};
-pub use forecast::certified::{CertificateError, CertifiedForecast};
+pub use forecast::answer::Answer;
+pub use forecast::certified::CertificateError;
 pub use forecast::joint::GivenPlan;
+pub use forecast::request::{Motions, Request};
 pub use goals::model::GoalModel;
 pub use goals::remembering::Remembering;
-pub use live::forecaster::{LiveForecast, LiveForecaster};
-pub use live::memory_file::MemoryFile;
-pub use live::place_memory::PlaceMemory;
-pub use live::scenes::{LiveScenes, SceneBatch};
+pub use live::memory_files::{SessionMemory, file_stem};
+pub use live::session::{FrameAnswer, Session};
+pub use live::waiting::{SceneBatch, SceneWindows, WaitingWindows};
 pub use model::ddl::Ddl;
+pub use note::{MisfitNote, Note};
 pub use run::builtin_model::BuiltinModel;
 pub use run::config::{FORMAT, RunConfig, TrainingData};
 pub use run::directory::{RunDirectory, write_atomically};
@@ -73,14 +77,12 @@ pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal
 pub use run::track_units::TrackUnits;
 pub use run::training_data::fold_by_name;
 pub use run::validation_part::ValidationPart;
-pub use tracks::json_lines::{joint_lines, json_lines};
+pub use tracks::json_lines::json_lines;
 pub use tracks::moment::Moment;
-pub use tracks::observed::{
-    NOISY, OWN_CLOCKS, ObservedTracks, in_frames, steps_in_words, words_of_misfits, words_of_warning,
-};
+pub use tracks::observed::{NobodyObserved, ObservedTracks, in_frames, misfits_of, noise, steps_in_words};
 pub use tracks::timed::TimedRecording;
 pub use tracks::unfamiliar::UnfamiliarMotions;
-pub use tracks::windows::windows_of;
+pub use tracks::windows::{OutOfGap, WindowOptions};
 pub use trust::calibration::region_table;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 

@@ -1,10 +1,8 @@
 //! A day of live tracks: memory and time per frame stay constant. Measured in a separate process, because the other
 //! tests of this program use memory as well.
 
-use ddl::data::{PedestrianId, Position, Window};
-use ddl::eval::baseline::ConstantVelocity;
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster, LiveForecaster};
-use ddl_tests::made::Made;
+use ddl::data::{LiveTracks, PedestrianId, Position};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Request, Session};
 use ddl_tests::{nightly, processes};
 use std::time::Instant;
 
@@ -33,17 +31,17 @@ fn quantiles(seconds: &mut [f64]) -> [f64; 2] {
     [0.5, 0.99].map(|q| 1e3 * seconds[(q * (seconds.len() - 1) as f64) as usize])
 }
 
-/// The child process: streams `frames` frames and measures the first and last `part`.
-fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Vec<f64>> {
-    let mut live = LiveForecaster::new(model);
+/// The child process: streams `frames` frames and measures the first and last `part`. `push` adds a frame, and says
+/// whether there is a window and how many pedestrians are kept.
+fn stream(mut push: impl FnMut(i64) -> (bool, usize), (frames, part): (usize, usize)) -> Option<Vec<f64>> {
     let mut seconds = vec![0.0; frames];
     let (mut early, mut most) = (0, 0);
     for (frame, seconds) in seconds.iter_mut().enumerate() {
         let begun = Instant::now();
-        let now = live.push(frame as i64, pedestrians(frame as i64)).unwrap();
+        let (is_window, kept) = push(frame as i64);
         *seconds = begun.elapsed().as_secs_f64();
-        assert_eq!(now.is_some(), frame >= 7, "a pedestrian is always present");
-        most = most.max(live.tracks().len());
+        assert_eq!(is_window, frame >= 7, "a pedestrian is always present");
+        most = most.max(kept);
         if frame + 1 == part {
             early = processes::resident_bytes()?;
         }
@@ -62,15 +60,21 @@ fn a_day_of_forecasts_needs_constant_memory() {
     watched("a live stream, one forecast per pedestrian", "a_day_of_forecasts_needs_constant_memory", size, || {
         ddl::prepare(DeviceChoice::Cpu, Some(1)).unwrap();
         let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
-        stream(Made(|windows: &[Window]| model.forecast_central(windows)), size)
+        let mut session = Session::new(model, LiveTracks::new(), Request::one()).unwrap();
+        let push = |frame| {
+            let now = session.push(frame, pedestrians(frame)).unwrap();
+            (now.answer.is_some(), session.tracks(None).map_or(0, LiveTracks::len))
+        };
+        stream(push, size)
     });
 }
 
 #[test]
 fn a_day_of_tracks_needs_constant_memory() {
     let size = (24 * HOUR, HOUR);
-    watched("a live stream, constant velocity", "a_day_of_tracks_needs_constant_memory", size, || {
-        stream(ConstantVelocity::LastStep, size)
+    watched("live tracks alone", "a_day_of_tracks_needs_constant_memory", size, || {
+        let mut tracks = LiveTracks::new();
+        stream(|frame| (tracks.push(frame, pedestrians(frame)).unwrap().is_some(), tracks.len()), size)
     });
 }
 

@@ -8,7 +8,7 @@ use crate::units::Units;
 use crate::{output, recordings};
 use clap::Args;
 use ddl::data::{Clock, PlausibilityWarning, Recording, Summary, Window};
-use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource, TimedRecording};
+use ddl::{BuiltinModel, DeviceChoice, GoalModel, ModelSource, Note, TimedRecording};
 use place_memory::{MemoryOfFile, MemoryPicture};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -194,9 +194,9 @@ fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String>
     let warnings = summary.warnings();
     let is_fast = |warning: &&PlausibilityWarning| matches!(warning, PlausibilityWarning::Fast { .. });
     let fast = warnings.iter().find(is_fast);
-    let misfits = ddl::words_of_misfits(recording, clock, &summary.misfits, fast);
-    let warnings = warnings.into_iter().map(|warning| ddl::in_frames(clock, warning));
-    warnings.map(|warning| ddl::words_of_warning(&warning)).chain(misfits).collect()
+    let misfits = ddl::misfits_of(recording, clock, &summary.misfits, fast);
+    let warnings = warnings.into_iter().map(|warning| Note::Implausible(ddl::in_frames(clock, warning)));
+    warnings.chain(misfits).map(|note| note.to_string()).collect()
 }
 
 /// The rate of the rows of a pedestrian, its jitter, and the noise.

@@ -1,17 +1,19 @@
 //! `ddl forecast`: forecasts of a file of tracks or of live tracks.
 
+mod answer;
 mod arguments;
 mod first_rows;
 mod frames;
-mod kept_memory;
 mod left_out;
 mod live;
-mod moment;
+mod plans;
+mod state;
 mod stream;
 mod table;
 mod told_once;
 
+pub(crate) use answer::answer;
 pub(crate) use arguments::ForecastCommand;
-pub(crate) use kept_memory::file_stem;
-pub(crate) use moment::StreamState;
-pub(crate) use stream::{Answer, OutputFormat, StreamOptions, answer};
+pub(crate) use plans::{NamedPlan, read_plans, tell_doubts_of_ego};
+pub(crate) use state::StreamState;
+pub(crate) use stream::{AnsweringCommand, OutputFormat, StreamOptions};

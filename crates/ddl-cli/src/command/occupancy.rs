@@ -1,11 +1,11 @@
 //! `ddl occupancy`: where somebody will be.
 
-use crate::command::forecast::{Answer, StreamOptions, StreamState, answer, file_stem};
+use crate::command::forecast::{AnsweringCommand, StreamOptions, StreamState, answer};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use ddl::Moment;
 use ddl::data::write_atomically;
 use ddl::scene::{Area, Futures, Occupancy};
+use ddl::{Moment, file_stem};
 use serde_json::Value;
 use std::path::PathBuf;
 
@@ -123,7 +123,7 @@ impl OccupancyCommand {
     }
 }
 
-impl Answer for OccupancyCommand {
+impl AnsweringCommand for OccupancyCommand {
     fn stream(&self) -> &StreamOptions {
         &self.stream
     }
@@ -138,8 +138,8 @@ impl Answer for OccupancyCommand {
         let times = Occupancy::every(self.every)?;
         let mut text = String::new();
         for moment in moments {
-            let futures = Futures::new(moment.window, moment.forecast.clone())?;
-            let area = self.area_of(&futures)?;
+            let futures = moment.answer.futures()?;
+            let area = self.area_of(futures)?;
             area.ensure_kept(times.len())?;
             let grids = futures.occupancy(&area, &times, self.radius)?;
             let moment_number = moment.observed_until().rounded();

@@ -1,13 +1,14 @@
 //! `ddl risk`: how likely somebody comes close to a plan.
 
-use crate::command::forecast::{Answer, OutputFormat, StreamOptions, StreamState, answer};
+use crate::command::forecast::{
+    AnsweringCommand, NamedPlan, OutputFormat, StreamOptions, StreamState, answer, read_plans, tell_doubts_of_ego,
+};
 use crate::output::{table_metres, table_share};
-use crate::plans::{NamedPlan, read_plans, tell_doubts_of_ego};
 use anyhow::Context as _;
 use clap::Args;
 use ddl::Moment;
 use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
-use ddl::scene::{Clearance, Futures, Plan};
+use ddl::scene::{Clearance, Plan};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -110,7 +111,7 @@ impl RiskCommand {
     }
 }
 
-impl Answer for RiskCommand {
+impl AnsweringCommand for RiskCommand {
     fn stream(&self) -> &StreamOptions {
         &self.stream
     }
@@ -123,7 +124,7 @@ impl Answer for RiskCommand {
         for moment in moments {
             tell_doubts_of_ego(self.ego.as_deref(), &all, moment.window, state);
             let ego = self.ego(moment.window);
-            let futures = Futures::new(moment.window, moment.forecast.clone())?;
+            let futures = moment.answer.futures()?;
             let risks = if self.unseen {
                 futures.risks(&plans, self.within, ego)?
             } else {

@@ -2,11 +2,11 @@
 
 use crate::command::{Machine, ModelChoice};
 use crate::output;
-use crate::telling::tell;
+use crate::telling::tell_note;
 use crate::tracks::TrackOptions;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::{Forecast, Forecaster as _, RecordingPlayer};
+use ddl::{RecordingPlayer, Request};
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
@@ -48,32 +48,18 @@ impl View {
         let model = self.model.load(self.machine.device)?;
         let (observed, _) = self.tracks.observed(model.config())?;
         let recording = &observed.recording;
-        let player = RecordingPlayer {
-            model: &model,
-            recording,
-            windows: &observed.windows,
-            most: self.moments,
-            joint: self.joint,
-        };
-        let forecasts = if self.joint {
-            model.forecast_scenes(&player.shown(), None)?
-        } else {
-            model.forecast_all(&player.shown())?
-        };
-        let forecasts: Vec<&Forecast> = forecasts.iter().collect();
+        let player = RecordingPlayer { model: &model, recording, windows: &observed.windows, most: self.moments };
+        let request = if self.joint { Request::joint() } else { Request::default() };
+        let answers = model.forecast(&player.shown(), &request)?;
         let name = self.tracks.file().file_name().unwrap_or_default();
         let (warning, clock) = (observed.warning.as_ref(), observed.clock);
-        let page = player.to_html(&forecasts, &name.to_string_lossy(), warning, clock)?;
+        let page = player.to_html(&answers, &name.to_string_lossy(), warning, clock)?;
         let path = self.output.unwrap_or_else(|| {
             let stem = self.tracks.file().file_stem().unwrap_or_default();
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
         });
         output::write_output(Some(&path), &page)?;
-        let unfamiliar = player.unfamiliar(&forecasts, clock);
-        let misfits = observed.misfits().map(|words| format!("warning: {words}"));
-        for warning in unfamiliar.into_iter().chain(misfits) {
-            tell(format_args!("{warning}"));
-        }
+        player.unfamiliar(&answers, clock).iter().chain(&observed.misfits()).for_each(tell_note);
         if output::file_of(Some(&path)).is_none() {
             return Ok(());
         }

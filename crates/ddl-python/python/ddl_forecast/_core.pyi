@@ -11,6 +11,7 @@ from ddl_forecast._arrays import Flags, Floats, Integers
 
 __all__ = [
     "Flow",
+    "Futures",
     "GoalEstimator",
     "Live",
     "Model",
@@ -20,8 +21,6 @@ __all__ = [
     "UNFAMILIAR",
     "__version__",
     "baseline",
-    "check_plans",
-    "clearances",
     "collisions",
     "conventions",
     "displacement_errors",
@@ -29,10 +28,8 @@ __all__ = [
     "kde_nll",
     "mahalanobis",
     "main",
-    "occupancy",
     "region_radii",
     "report",
-    "risks",
     "scores",
     "set_num_threads",
     "spread_between",
@@ -45,8 +42,6 @@ __version__: str
 UNFAMILIAR: float
 
 _Path = str | os.PathLike[str]
-# Observed positions and the deviations of the last, paths, weights and spread.
-_Joint = tuple[Floats, ...]
 
 def main(arguments: list[str]) -> int: ...
 def set_num_threads(threads: int) -> None:
@@ -129,6 +124,18 @@ class Recording:
     def doubt(self) -> str | None: ...
 
 @final
+class Futures:
+    def risks(
+        self, plans: Sequence[Floats], within: float, ego: int | None, seen: bool
+    ) -> tuple[Floats, Floats, Floats, Floats]: ...
+    def clearances(self, plans: Sequence[Floats]) -> tuple[Floats, Floats]: ...
+    def occupancy(
+        self, options: tuple[float, float, float, float], area: tuple[float, float, float, float] | None
+    ) -> tuple[NDArray[np.float32], list[float], list[float]]: ...
+    @staticmethod
+    def of_json(json: str | None) -> Futures: ...
+
+@final
 class Live:
     def __new__(
         cls,
@@ -149,14 +156,6 @@ class Live:
     def refused(self) -> str | None: ...
     def close(self) -> str | None: ...
 
-def check_plans(plans: Sequence[Floats], within: float) -> None: ...
-def risks(
-    joint: _Joint, plans: Sequence[Floats], within: float, ego: int | None, seen: bool
-) -> tuple[Floats, Floats, Floats, Floats]: ...
-def clearances(joint: _Joint, plans: Sequence[Floats]) -> tuple[Floats, Floats]: ...
-def occupancy(
-    joint: _Joint, options: tuple[float, float, float, float], area: tuple[float, float, float, float] | None
-) -> tuple[NDArray[np.float32], list[float], list[float]]: ...
 def region_radii(
     observed: tuple[Floats, Floats], weights: Floats, spread: Floats, region_table: str, level: float
 ) -> Floats: ...

@@ -139,7 +139,7 @@ class Forecast:
     recording: str = ""
     joint: bool = False
     _region_table: str | None = field(default=None, repr=False)
-    _is_given: bool = field(default=False, repr=False)
+    _futures: _core.Futures | None = field(default=None, repr=False)
     _left_out: int = field(default=0, repr=False)
 
     @classmethod
@@ -149,11 +149,11 @@ class Forecast:
         ids: Sequence[Hashable] | None = None,
         *,
         joint: bool = False,
-        given: bool = False,
         left_out: int = 0,
     ) -> Forecast:
         evidence = parts.pop("certificates")
         table = parts.pop("region_table")
+        futures = parts.pop("futures")
         frames = parts.pop("frames", None)
         named = parts.pop("ids", None)
         names = ids if ids is not None else named
@@ -166,7 +166,7 @@ class Forecast:
             frames=frames,
             joint=joint,
             _region_table=table,
-            _is_given=given,
+            _futures=futures,
             _left_out=left_out,
         )
 
@@ -231,11 +231,7 @@ class Forecast:
         DoubtWarning
             Pedestrians are seen now who could not be forecast: they do not count, and are NaN.
         """
-        joint, rows = self._arrays()
-        if seen and self._is_given:
-            raise ValueError(
-                "the people of this forecast already keep away from the plan it was given: give seen=False"
-            )
+        scene, rows = self._scene(), self.valid
         if self._left_out > 0:
             words = f"pedestrians who could not be forecast and do not count: {self._left_out}"
             warnings.warn(words, DoubtWarning, stacklevel=2)
@@ -245,12 +241,7 @@ class Forecast:
             if found.size == 0:
                 raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
             row = int(found[0])
-        if not rows.any():
-            given = _plans(plans)
-            _core.check_plans(given, within)
-            count, nobody = len(given), np.full((len(given), len(self)), np.nan)
-            return Risk(np.zeros(count), nobody, np.zeros((count, 12)), np.zeros((count, 12)))
-        total, people, steps, until = _core.risks(joint, _plans(plans), within, row, seen)
+        total, people, steps, until = scene.risks(_plans(plans), within, row, seen)
         of_each = np.full((len(total), len(self)), np.nan)
         of_each[:, rows] = people
         return Risk(total, of_each, steps, until)
@@ -260,13 +251,8 @@ class Forecast:
 
         Of people who do not see the plan, as in ``risk(seen=False)``.
         """
-        joint, rows = self._arrays()
-        if not rows.any():
-            given = _plans(plans)
-            _core.check_plans(given, 0.0)
-            count = len(given)
-            return np.full(count, np.inf), np.full((count, len(self)), np.nan)
-        nearest, people = _core.clearances(joint, _plans(plans))
+        rows = self.valid
+        nearest, people = self._scene().clearances(_plans(plans))
         of_each = np.full((len(nearest), len(self)), np.nan)
         of_each[:, rows] = people
         return nearest, of_each
@@ -291,22 +277,18 @@ class Forecast:
         area
             Lowest x and y, largest x and y, metres; default: all paths and ``margin`` around them.
         """
-        joint, _ = self._arrays()
-        grids, times, origin = _core.occupancy(joint, (cell, every, radius, margin), area)
+        grids, times, origin = self._scene().occupancy((cell, every, radius, margin), area)
         return Occupancy(grids, np.array(times), cell, np.array(origin))
 
     def _ensure_joint(self) -> None:
         if not self.joint:
             raise ValueError("this forecast is of single pedestrians: make it with joint=True")
 
-    def _arrays(self) -> tuple[tuple[Floats, ...], Flags]:
-        """The arrays of the valid pedestrians, and which they are."""
+    def _scene(self) -> _core.Futures:
         self._ensure_joint()
-        if self.spread is None:
+        if self._futures is None:
             raise ValueError("this forecast has no spread: only the 20 futures of a model have it")
-        rows = self.valid
-        parts = (self.past, self.deviation, self.paths, self.weights, self.spread)
-        return tuple(np.ascontiguousarray(each[rows]) for each in parts), rows
+        return self._futures
 
     def most_likely(self) -> Floats:
         """(n, 12, 2) the path of the hypothesis with the largest weight, metres."""

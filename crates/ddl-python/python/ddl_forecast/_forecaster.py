@@ -166,7 +166,7 @@ class Forecaster:
         for parts, array, count in zip(made, arrays, asked, strict=True):
             missing = np.isnan(parts["weights"][:, 0]) if parts["weights"].size else np.ones(count, dtype=np.bool_)
             left_out = int((missing & np.isfinite(array[:count, -1]).all(axis=1)).sum()) if joint else 0
-            forecasts.append(Forecast._of(parts, joint=joint, given=given is not None, left_out=left_out))
+            forecasts.append(Forecast._of(parts, joint=joint, left_out=left_out))
         return _told(forecasts, doubt)
 
     def forecast_recording(

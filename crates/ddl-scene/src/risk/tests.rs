@@ -105,7 +105,7 @@ fn what_cannot_be_asked_is_refused() {
     }
     let window = Window::new("yard", 0, 10, vec![ddl_core::PedestrianId(1)], vec![vec![[0.0; 2]; 8]]).unwrap();
     let bare = Forecast::with_equal_weights(1, 1, vec![[0.0; 2]; 12]).unwrap();
-    let bare = Futures::new(&window, bare).unwrap();
+    let bare = Futures::new(&window, bare, None).unwrap();
     assert_eq!(bare.risks(&[], 0.5, None), Err(SceneError::NoSpread));
     assert_eq!(bare.clearances(&[]), Err(SceneError::NoSpread));
 }

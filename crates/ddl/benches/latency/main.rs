@@ -15,7 +15,7 @@ mod step;
 
 use ddl::data::Dataset;
 use ddl::memory::SceneMemory;
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Request};
 use rustix::time::{ClockId, clock_gettime};
 use std::error::Error;
 use std::hint::black_box;
@@ -89,7 +89,7 @@ fn forecasts(dataset: &Dataset, segments: usize, runs: usize) -> Result<()> {
     let mut windows = recordings.flat_map(ddl::data::Recording::observed_windows);
     let crowded = windows.find(|window| window.len() >= 25).ok_or("no crowded scene")?;
     let window = crowded.filter_pedestrians(|i| i < 25).ok_or("nobody")?;
-    let windows = std::slice::from_ref(&window);
+    let (windows, all) = (std::slice::from_ref(&window), Request::default());
     let memory = memory_of(dataset, segments)?;
     let count = model.goal_model().recalled_per_pedestrian()?;
     let show = |part: &str, work: &dyn Fn() -> Result<()>| -> Result<()> {
@@ -98,11 +98,11 @@ fn forecasts(dataset: &Dataset, segments: usize, runs: usize) -> Result<()> {
         Ok(())
     };
     println!("25 pedestrians, 20 hypotheses, one thread, processor time");
-    show("whole forecast", &|| Ok(model.forecast(&window).map(drop)?))?;
+    show("whole forecast", &|| Ok(model.forecast(windows, &all).map(drop)?))?;
     show("its goals", &|| Ok(model.goal_model().goals(windows).map(drop)?))?;
-    show("one hypothesis", &|| Ok(model.forecast_central(windows).map(drop)?))?;
-    show("model hotel, whose network is the Transformer", &|| Ok(transformer.forecast(&window).map(drop)?))?;
-    let remembering = || Ok(model.forecast(&memory.recalling(window.clone(), count)).map(drop)?);
+    show("one hypothesis", &|| Ok(model.forecast(windows, &Request::one()).map(drop)?))?;
+    show("model hotel, whose network is the Transformer", &|| Ok(transformer.forecast(windows, &all).map(drop)?))?;
+    let remembering = || Ok(model.forecast(&[memory.recalling(window.clone(), count)], &all).map(drop)?);
     show(&format!("with a memory of {} segments", memory.segments()), &remembering)
 }
 

@@ -6,6 +6,8 @@ use crate::evaluation::published::{self, OracleVariant, Published};
 use crate::evaluation::rows::{NamedForecasts, ResultRows};
 use crate::evaluation::straight_lines::{straight_lines, weighted};
 use crate::evaluation::variant::{EvaluationVariant, GivenGoals, VariantMotion, memory_words};
+use crate::forecast::answer::Answer;
+use crate::forecast::request::Request;
 use crate::goals::model::GoalModel;
 use crate::goals::remembering::Remembering;
 use crate::goals::sets;
@@ -191,7 +193,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 match variant.motion {
                     VariantMotion::Shaped(integrator) => model.forecast_towards(windows, goals, integrator),
                     VariantMotion::Neutral => model.forecast_neutral(windows, goals),
-                    VariantMotion::Scenes => model.forecast_scenes(windows, None),
+                    VariantMotion::Scenes => {
+                        let answers = model.forecast(windows, &Request::joint())?;
+                        Ok(answers.into_iter().map(Answer::into_forecast).collect())
+                    }
                 }
             };
             Ok(Forecasts {

@@ -1,58 +1,13 @@
-//! Forecasts with a certificate for every hypothesis.
+//! Walks to the goals, and their certificates.
 
+use crate::forecast::answer::Certificates;
 use crate::forecast::name::NAME;
 use crate::forecast::walk::Approach;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError, HORIZON, OBSERVED, Pace, PedestrianName, Position, Spread, Window};
-use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
+use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds};
 use ddl_network::{NetworkFrame, StarConfig, StepRule, Variant, motion_bounds};
 use rayon::prelude::*;
-
-/// A forecast with a Lyapunov certificate for every hypothesis.
-///
-/// A certificate refers to exactly the positions of the forecast, starting with the last observed one.
-/// [`LyapunovCertificate::verify`] checks its numbers.
-///
-/// # Shapes
-/// One certificate of 12 steps for each pedestrian and hypothesis, `[N][K]`.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct CertifiedForecast {
-    /// The forecast; [`certified`](Forecast::certified) states which certificates hold.
-    pub forecast: Forecast,
-    /// `[N][K]`; empty if the forecast was made without certificates.
-    pub certificates: Vec<LyapunovCertificate<f64>>,
-}
-
-/// Without certificates.
-impl From<Forecast> for CertifiedForecast {
-    fn from(forecast: Forecast) -> Self {
-        let certificates = Vec::new();
-        Self { forecast, certificates }
-    }
-}
-
-impl CertifiedForecast {
-    /// The certificate of hypothesis `k` of pedestrian `i`.
-    ///
-    /// # Panics
-    /// When `i` or `k` is out of range.
-    #[must_use]
-    pub fn certificate(&self, i: usize, k: usize) -> &LyapunovCertificate<f64> {
-        assert!(k < self.forecast.hypotheses(), "hypothesis {k} asked of {}", self.forecast.hypotheses());
-        &self.certificates[i * self.forecast.hypotheses() + k]
-    }
-
-    /// Pedestrian, hypothesis and violation of the first certificate that does not hold; `None` when all hold.
-    #[must_use]
-    pub fn first_violation(&self) -> Option<(usize, usize, Violation)> {
-        let hypotheses = self.forecast.hypotheses();
-        self.certificates.iter().enumerate().find_map(|(pair, certificate)| {
-            let violation = certificate.verify().err()?;
-            Some((pair / hypotheses, pair % hypotheses, violation))
-        })
-    }
-}
 
 /// The reason why a forecast has no certificates.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -64,6 +19,8 @@ pub enum CertificateError {
          variant `full` or `no-goal-shift`, or forecast without certificates"
     )]
     NoFlow { variant: Variant },
+    #[error("whoever follows a plan has no flow to certify: leave out the plan or the certificates")]
+    GivenPlan,
     #[error(
         "window of `{recording}` starting at frame {start_frame}, pedestrian {pedestrian}, hypothesis \
          {hypothesis}: {cause}; check that the positions are in metres and that training has not diverged"
@@ -137,12 +94,15 @@ impl Walked<'_> {
         Ok(forecast.with_spread(Spread { scales, paces, regions: Calibration::shared_regions() })?)
     }
 
-    pub(crate) fn certified(mut self) -> Result<CertifiedForecast, ForecastError> {
+    /// The forecast, and its certificates if they are asked for.
+    pub(crate) fn certified(mut self, certificates: bool) -> Result<(Forecast, Certificates), ForecastError> {
+        if !certificates {
+            return Ok((self.forecast()?, Vec::new()));
+        }
         let rolled_out = std::mem::take(&mut self.rolled_out);
         let (positions, certificates) = self.walks(rolled_out, |certificate| certificate)?;
         let held = certificates.iter().map(|certificate| certificate.verify().is_ok()).collect();
-        let forecast = self.at(positions)?.with_certified(held)?;
-        Ok(CertifiedForecast { forecast, certificates })
+        Ok((self.at(positions)?.with_certified(held)?, certificates))
     }
 
     /// The positions of every hypothesis, `[N][K][12]`, and the result of `keep` for its certificate, `[N][K]`. With
@@ -217,21 +177,18 @@ impl Walked<'_> {
     }
 }
 
-pub(crate) fn ensure_flow(variant: Variant) -> Result<(), ForecastError> {
-    if variant.dynamics() { Ok(()) } else { Err(no_flow(variant)) }
-}
-
-fn no_flow(variant: Variant) -> ForecastError {
+pub(crate) fn no_flow(variant: Variant) -> ForecastError {
     failed(CertificateError::NoFlow { variant })
 }
 
-fn failed(error: CertificateError) -> ForecastError {
+pub(crate) fn failed(error: CertificateError) -> ForecastError {
     ForecastError::model(NAME, error)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::forecast::answer::Answer;
     use ddl_core::{ObservationQuality, PedestrianId, distance};
 
     /// Two pedestrians, the second badly observed, with two goals each; no part of the network is used.
@@ -258,31 +215,35 @@ mod tests {
             weights: vec![0.75, 0.25, 0.4, 0.6],
             goals: goals.clone(),
         };
-        let made = walked(StepRule::Bounded, Vec::new()).certified().unwrap();
+        let answer = |walked: Walked<'_>| Answer::of_each(walked.certified(true).unwrap());
+        let made = answer(walked(StepRule::Bounded, Vec::new()));
         assert_eq!(made.first_violation(), None);
-        assert_eq!(made.forecast, walked(StepRule::Bounded, Vec::new()).forecast().unwrap());
+        assert_eq!(*made.forecast(), walked(StepRule::Bounded, Vec::new()).forecast().unwrap());
         let (calibration, time_step) = (Calibration::fitted(), config.time_step);
         for (i, weights, deviation) in [(0, [0.75, 0.25], [0.0, 0.0]), (1, [0.4, 0.6], [0.3, 0.2 * 0.4])] {
             let (observed, goals) = (window.observed(i), &goals[2 * i..2 * i + 2]);
             let spread = calibration.spread(Pace::Walking, observed, goals, &weights, time_step);
             for (t, spread) in spread.into_iter().enumerate() {
                 let added = f64::hypot(deviation[0], deviation[1] * (t + 1) as f64);
-                assert!((made.forecast.scale(i, t).unwrap() - spread.hypot(added)).abs() < 1e-12);
+                assert!((made.forecast().scale(i, t).unwrap() - spread.hypot(added)).abs() < 1e-12);
             }
             // Each goes on from the last position, and arrives at its goal.
             for (k, goal) in goals.iter().enumerate() {
-                let path = made.forecast.hypothesis(i, k);
+                let path = made.forecast().hypothesis(i, k);
                 let off = [distance(path[0], observed[7]), distance(path[HORIZON - 1], *goal)];
                 assert!(off[0] < 0.9 && off[1] < 0.05, "{i} {k}: {off:?}");
             }
         }
         // With plain steps the paths are those of the network: one of them leads away from its goal.
-        let mut paths = [0, 1, 2, 3].map(|k| made.forecast.hypothesis(k / 2, k % 2));
+        let mut paths = [0, 1, 2, 3].map(|k| made.forecast().hypothesis(k / 2, k % 2));
         paths[2] = &away;
-        let led_away = walked(StepRule::Euler, paths.concat()).certified().unwrap();
-        assert_eq!(led_away.forecast.hypothesis(1, 0), away);
-        assert_eq!(led_away.forecast.certified(1, 0), Some(false));
-        assert!(led_away.certificate(1, 0).verify().is_err() && led_away.certificate(0, 1).verify().is_ok());
+        let led_away = answer(walked(StepRule::Euler, paths.concat()));
+        assert_eq!(led_away.forecast().hypothesis(1, 0), away);
+        assert_eq!(led_away.forecast().certified(1, 0), Some(false));
+        assert!(
+            led_away.certificate(1, 0).unwrap().verify().is_err()
+                && led_away.certificate(0, 1).unwrap().verify().is_ok()
+        );
         let violated = led_away.first_violation().map(|(i, k, _)| (i, k));
         assert_eq!(violated, Some((1, 0)));
     }

@@ -4,11 +4,12 @@
 //! are the mean of those of the mixture. The mean of factors with positive diagonals has a positive diagonal, so P
 //! stays positive definite, and every path has its certificate as a hypothesis has.
 
+use crate::forecast::answer::Answer;
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
 use crate::trust::calibration::Calibration;
-use ddl_core::{Forecast, ForecastError, HORIZON, PedestrianName, Position, Spread, TIME_STEP};
-use ddl_scene::{JointMixture, Plan, SceneError};
+use ddl_core::{Forecast, ForecastError, HORIZON, PedestrianName, Position, Spread, TIME_STEP, Window};
+use ddl_scene::{Futures, JointMixture, Plan, SceneError};
 
 /// A plan that the pedestrians of a scene respond to.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,7 +22,7 @@ pub struct GivenPlan {
 
 impl Walked<'_> {
     /// The same pedestrians with joint futures instead of hypotheses.
-    pub(crate) fn joint(mut self, given: Option<&GivenPlan>) -> Result<Self, ForecastError> {
+    fn joint(mut self, given: Option<&GivenPlan>) -> Result<Self, ForecastError> {
         if self.hypotheses > JointMixture::MOST_HYPOTHESES {
             let (found, most) = (self.hypotheses, JointMixture::MOST_HYPOTHESES);
             return Err(ForecastError::model(NAME, SceneError::Hypotheses { found, most }));
@@ -52,15 +53,24 @@ impl Walked<'_> {
         self.window.named(given?.ego.as_ref()?)
     }
 
-    /// The forecast of joint futures; the ego, if it is in the window, follows the plan in all of them.
-    pub(crate) fn forecast_given(self, given: Option<&GivenPlan>) -> Result<Forecast, ForecastError> {
-        let ego = self.ego(given);
-        let forecast = self.forecast()?;
-        match (ego, given) {
-            (Some(ego), Some(given)) => Ok(forecast.with_path(ego, &planned(&given.plan))),
-            _ => Ok(forecast),
+    /// The joint futures of these pedestrians, as an answer; the ego, if it is in the window, follows the plan in all of
+    /// them.
+    pub(crate) fn joint_answer(self, given: Option<&GivenPlan>, certificates: bool) -> Result<Answer, ForecastError> {
+        let window = self.window;
+        let joint = self.joint(given)?;
+        let ego = joint.ego(given);
+        let plan = given.map(|given| given.plan.clone());
+        let (mut forecast, certificates) = joint.certified(certificates)?;
+        if let (Some(ego), Some(plan)) = (ego, &plan) {
+            forecast = forecast.with_path(ego, &planned(plan));
         }
+        Ok(Answer::of_scene(futures(window, forecast, plan)?, certificates))
     }
+}
+
+/// The futures of a joint forecast.
+pub(crate) fn futures(window: &Window, forecast: Forecast, plan: Option<Plan>) -> Result<Futures, ForecastError> {
+    Futures::new(window, forecast, plan).map_err(|error| ForecastError::model(NAME, error))
 }
 
 /// Where a plan is at the 12 steps, metres.

@@ -1,10 +1,12 @@
 //! A page that plays the forecasts of a recording.
 
 use crate::error::DdlError;
+use crate::forecast::answer::Answer;
 use crate::model::ddl::Ddl;
+use crate::note::Note;
 use crate::tracks::moment::Moment;
 use crate::tracks::unfamiliar::UnfamiliarMotions;
-use ddl_core::{Forecast, Forecaster as _, OBSERVED, Window};
+use ddl_core::{Forecaster as _, OBSERVED, Window};
 use ddl_data::{Clock, PlausibilityWarning, Recording};
 use ddl_eval::EvaluationError;
 use ddl_report::ForecastSnapshot;
@@ -21,8 +23,6 @@ pub struct RecordingPlayer<'a> {
     pub windows: &'a [Window],
     /// Largest number of windows to play.
     pub most: usize,
-    /// Whether the forecasts are [joint futures](Ddl::forecast_scenes): the page then steps through them.
-    pub joint: bool,
 }
 
 impl RecordingPlayer<'_> {
@@ -34,34 +34,34 @@ impl RecordingPlayer<'_> {
     }
 
     /// A warning of motions unlike the training motions; arguments as those of [`to_html`](Self::to_html).
-    pub fn unfamiliar(&self, forecasts: &[&Forecast], clock: Clock) -> Option<String> {
+    pub fn unfamiliar(&self, answers: &[Answer], clock: Clock) -> Option<Note> {
         let (shown, mut motions) = (self.shown(), UnfamiliarMotions::default());
-        for (window, forecast) in shown.iter().zip(forecasts) {
-            motions.add(&[Moment::new(window, forecast, clock)]);
+        for (window, answer) in shown.iter().zip(answers) {
+            motions.add(&[Moment::new(window, answer, clock)]);
         }
         motions.warning()
     }
 
-    /// The page, from one forecast for each window in [`shown`](Self::shown). `name` is the title of the recording,
+    /// The page, from one answer for each window in [`shown`](Self::shown). `name` is the title of the recording,
     /// `warning` describes a fault of it, and `clock` is that of its frames or times.
     ///
     /// # Errors
     /// [`DdlError::Evaluation`] or [`DdlError::Report`] if a forecast does not fit its window, or if there are none.
     pub fn to_html(
         &self,
-        forecasts: &[&Forecast],
+        answers: &[Answer],
         name: &str,
         warning: Option<&PlausibilityWarning>,
         clock: Clock,
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
         let futures = recording.futures();
-        let moments = shown.iter().zip(forecasts).map(|(window, forecast)| {
+        let moments = shown.iter().zip(answers).map(|(window, answer)| {
             let seen = futures.of(window);
-            let mut moment = ForecastSnapshot::under_way(model.name(), window, forecast, &seen)?;
+            let mut moment = ForecastSnapshot::under_way(model.name(), window, answer.forecast(), &seen)?;
             moment.frame = clock.number(moment.frame).nearest();
             moment.when = Some(clock.words(window.frames()[OBSERVED - 1]));
-            if self.joint {
+            if answer.is_joint() {
                 moment.joint = true;
                 moment.groups = ddl_scene::groups(window);
             }
@@ -69,7 +69,7 @@ impl RecordingPlayer<'_> {
         });
         let moments: Vec<ForecastSnapshot> = moments.collect::<Result<_, EvaluationError>>()?;
         let warning = warning.map(|warning| format!("Doubtful: {warning} "));
-        let paths = if self.joint {
+        let paths = if answers.iter().any(Answer::is_joint) {
             "its true path as far as it was observed, and joint futures of all for the next 4.8 s"
         } else {
             "its forecast for the next 4.8 s, and its true path as far as it was observed"
@@ -86,16 +86,16 @@ impl RecordingPlayer<'_> {
             model.source(),
             model.goal_model().words()
         )];
-        notes.extend(certificates(forecasts));
-        notes.extend(self.unfamiliar(forecasts, clock).map(|warning| warning + "."));
+        notes.extend(certificates(answers));
+        notes.extend(self.unfamiliar(answers, clock).map(|warning| warning.line() + "."));
         let viewer = Viewer { title: recording.name(), lead: &lead, notes: &notes, moments: &moments };
         Ok(viewer.to_html()?)
     }
 }
 
-fn certificates(forecasts: &[&Forecast]) -> Option<String> {
+fn certificates(answers: &[Answer]) -> Option<String> {
     let mut verdicts = Vec::new();
-    for forecast in forecasts {
+    for forecast in answers.iter().map(Answer::forecast) {
         for i in 0..forecast.pedestrians() {
             verdicts.extend((0..forecast.hypotheses()).filter_map(|k| forecast.certified(i, k)));
         }

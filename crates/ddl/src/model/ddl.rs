@@ -1,43 +1,46 @@
-//! The trained model: its forecasts with and without certificates.
+//! The trained model, and its answers.
 
 use crate::device::Device;
 use crate::error::DdlError;
-use crate::forecast::certified::{self, CertifiedForecast, Walked};
-use crate::forecast::joint::GivenPlan;
+use crate::forecast::answer::Answer;
+use crate::forecast::certified::{self, CertificateError, Walked};
+use crate::forecast::joint;
 use crate::forecast::name::NAME;
+use crate::forecast::request::{Motions, Request};
 use crate::forecast::shaped::{self, GuidedGoals};
 use crate::goals::model::GoalModel;
 use crate::goals::sets;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
 use crate::run::model_source::ModelSource;
-use ddl_core::{Forecast, ForecastError, Forecaster, HORIZON, Position, Window};
+use ddl_core::{AdaptiveRegions, Forecast, ForecastError, Forecaster, HORIZON, Position, Window};
 use ddl_goal::GoalSet;
 use ddl_network::weights::Weights;
 use ddl_network::{ForecastWindows, StepRule};
 
 /// A trained model, ready to forecast.
 ///
-/// As a [`Forecaster`] it is the model of the protocol `fair`: one hypothesis for each of the K = 20 goals, with the
-/// weight of the goal. Each hypothesis follows a flow whose distance to the goal falls at every step. The protocol
-/// `single` calls [`forecast_central`](Self::forecast_central). The model reads the 8 observed frames and the memory of
-/// the window, if it has one.
+/// [`forecast`](Self::forecast) is the only way to ask it, by a [`Request`]. As a [`Forecaster`] it is the model of the
+/// protocol `fair`: one hypothesis for each of the K = 20 goals, with the weight of the goal. Each hypothesis follows a
+/// flow whose distance to the goal falls at every step. The protocol `single` asks for [one path](Request::one). The
+/// model reads the 8 observed frames and the memory of the window, if it has one.
 ///
 /// # Numerics
 /// The network computes in `f32` and shapes the metric P of each step. The variants with dynamics integrate in `f64`,
-/// by steps whose guarantee holds for the computed numbers. [`forecast_certified`](Self::forecast_certified) returns
-/// the evidence.
+/// by steps whose guarantee holds for the computed numbers. A request [with
+/// certificates](Request::with_certificates) returns the evidence.
 ///
 /// # Examples
 /// ```
 /// use ddl::data::{PedestrianId, Window};
-/// use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
+/// use ddl::{BuiltinModel, Ddl, DeviceChoice, Request};
 ///
 /// // Or `Ddl::load`, of a run of your own.
 /// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
 /// let walk = (0..8).map(|t| [0.5 * f64::from(t), 0.0]).collect(); // metres, 0.4 s apart
 /// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
-/// let forecast = model.forecast(&window)?;
+/// let answers = model.forecast(&[window], &Request::default())?;
+/// let forecast = answers[0].forecast();
 /// let one = forecast.hypothesis(0, forecast.representative(0)); // 12 positions, metres
 /// assert!(one[11][0] > 3.5, "the pedestrian continues");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -88,86 +91,59 @@ impl Ddl {
         Ok((self.network.copy_weights()?, proposal))
     }
 
-    /// Forecasts the windows, with evidence for every hypothesis that it approaches its goal.
+    /// What is asked of each window. Joint futures of a window do not depend on the other windows; [adaptive
+    /// regions](Request::adaptive_regions) go from one to the next, in order of time.
     ///
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all). Inside [`ForecastError::Model`]:
-    /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow) for the variants without dynamics, `star` and
-    /// `no-dynamics`; [`CertificateError::Walk`](crate::CertificateError::Walk) if the output of the network does not
-    /// define a flow.
-    pub fn forecast_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
-        certified::ensure_flow(self.config().star.variant)?;
-        let goals = self.goals.goals(windows)?;
-        let goals = self.guided(windows, goals);
-        shaped::walked(&*self.network, windows, goals, StepRule::Bounded)?.map(Walked::certified).collect()
-    }
-
-    /// The joint futures of each window: hypothesis k of all pedestrians is future k, with one weight for the scene, so
-    /// that people who walk together stay together and seldom walk through each other. With a plan the others respond
-    /// to it, and whoever follows it does so in every future. With one pedestrian it is the forecast of
-    /// [`forecast_all`](Forecaster::forecast_all). For the variant without goals noise vector k is future k, and a plan
-    /// changes nothing.
-    ///
-    /// # Errors
-    /// As [`forecast_all`](Forecaster::forecast_all).
-    pub fn forecast_scenes(
-        &self,
-        windows: &[Window],
-        given: Option<&GivenPlan>,
-    ) -> Result<Vec<Forecast>, ForecastError> {
-        let config = self.config();
-        if !config.star.variant.uses_goal() {
-            return shaped::without_goals(&*self.network, config.training.seed, windows);
+    /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow) where certificates are asked for and the variant
+    /// has none: `star`, and but for one path `no-dynamics`;
+    /// [`CertificateError::Walk`](crate::CertificateError::Walk) if the output of the network does not define a flow.
+    pub fn forecast(&self, windows: &[Window], request: &Request) -> Result<Vec<Answer>, ForecastError> {
+        let answers = self.forecast_plainly(windows, request)?;
+        if !request.adaptive_regions {
+            return Ok(answers);
         }
-        let joint = self.joint(windows, given)?;
-        joint.map(|walked| walked?.forecast_given(given)).collect()
+        let mut regions = AdaptiveRegions::default();
+        let pairs = windows.iter().zip(answers);
+        Ok(pairs.map(|(window, answer)| answer.adapted(&mut regions, window)).collect())
     }
 
-    /// [`forecast_scenes`](Self::forecast_scenes), with evidence for every path that it approaches its goal.
-    ///
-    /// # Errors
-    /// As [`forecast_certified`](Self::forecast_certified).
-    pub fn forecast_scenes_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
-        certified::ensure_flow(self.config().star.variant)?;
-        self.joint(windows, None)?.map(|walked| walked?.certified()).collect()
-    }
-
-    fn joint<'a>(
-        &'a self,
-        windows: &'a [Window],
-        given: Option<&'a GivenPlan>,
-    ) -> Result<impl Iterator<Item = Result<Walked<'a>, ForecastError>>, ForecastError> {
-        let goals = self.guided(windows, self.goals.goals(windows)?);
-        let walked = shaped::walked(&*self.network, windows, goals, StepRule::Bounded)?;
-        Ok(walked.map(move |walked| walked.joint(given)))
-    }
-
-    /// One hypothesis for each pedestrian: the neutral motion to the central goal of its goal set
-    /// ([`GoalSet::central`]). The forecasting network is not used. The variant without goals makes noise samples.
-    /// [`Forecast::certified`] states whether the certificate of each path holds.
-    ///
-    /// # Shapes
-    /// One forecast for each window, with one hypothesis of 12 positions (m) for each pedestrian.
-    ///
-    /// # Errors
-    /// As [`forecast_all`](Forecaster::forecast_all).
-    pub fn forecast_central(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        let goals = sets::with_central_only(windows, &self.goals.goals(windows)?);
-        self.forecast_neutral(windows, goals)
-    }
-
-    /// [`forecast_central`](Self::forecast_central) with evidence for every path that it approaches its goal.
-    ///
-    /// # Errors
-    /// As [`forecast_central`](Self::forecast_central); for the variant without goals
-    /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow).
-    pub fn forecast_central_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
+    /// Refuses certificates that no forecast of the model has.
+    pub(crate) fn check(&self, request: &Request) -> Result<(), ForecastError> {
         let variant = self.config().star.variant;
-        if !variant.uses_goal() {
-            certified::ensure_flow(variant)?;
+        let has_flow = variant.dynamics() || (request.motions == Motions::One && variant.uses_goal());
+        match request.certificates {
+            true if !has_flow => Err(certified::no_flow(variant)),
+            true if request.plan().is_some() => Err(certified::failed(CertificateError::GivenPlan)),
+            _ => Ok(()),
         }
-        let goals = sets::with_central_only(windows, &self.goals.goals(windows)?);
-        self.neutral(windows, goals).map(Walked::certified).collect()
+    }
+
+    /// [`forecast`](Self::forecast), where nothing adapts.
+    pub(crate) fn forecast_plainly(&self, windows: &[Window], request: &Request) -> Result<Vec<Answer>, ForecastError> {
+        self.check(request)?;
+        if !self.config().star.variant.uses_goal() {
+            // Noise vector k is future k, and a plan changes nothing.
+            let forecasts = shaped::without_goals(&*self.network, self.config().training.seed, windows)?;
+            let pairs = windows.iter().zip(forecasts);
+            let answers = pairs.map(|(window, forecast)| match request.is_joint() {
+                true => Ok(Answer::of_scene(joint::futures(window, forecast, None)?, Vec::new())),
+                false => Ok(forecast.into()),
+            });
+            return answers.collect();
+        }
+        let goals = self.goals.goals(windows)?;
+        if request.motions == Motions::One {
+            let walked = self.neutral(windows, sets::with_central_only(windows, &goals));
+            return walked.map(|walked| Ok(Answer::of_each(walked.certified(request.certificates)?))).collect();
+        }
+        let walked = shaped::walked(&*self.network, windows, self.guided(windows, goals), StepRule::Bounded)?;
+        let answers = walked.map(|walked| match request.is_joint() {
+            true => walked.joint_answer(request.plan(), request.certificates),
+            false => Ok(Answer::of_each(walked.certified(request.certificates)?)),
+        });
+        answers.collect()
     }
 
     /// One neutral path for every pedestrian, to the single goal of its set; for the variant without goals, noise

@@ -64,7 +64,7 @@ struct ObservedPedestrian {
 
 impl ObservedPedestrian {
     fn of(moment: &Moment<'_>, i: usize, regions: &[f64]) -> Self {
-        let (forecast, quality) = (moment.forecast, moment.window.quality(i));
+        let (forecast, quality) = (moment.answer.forecast(), moment.window.quality(i));
         let regions = regions.iter();
         Self {
             pedestrian: moment.window.name(i),
@@ -140,9 +140,9 @@ impl<'a> Certificate<'a> {
 impl<'a> Path<'a> {
     fn of(moment: &Moment<'a>, i: usize, k: usize) -> Self {
         Self {
-            goal: moment.forecast.goal(i, k),
-            positions: moment.forecast.hypothesis(i, k),
-            certificate: moment.certificate(i, k).map(Certificate::of),
+            goal: moment.answer.forecast().goal(i, k),
+            positions: moment.answer.forecast().hypothesis(i, k),
+            certificate: moment.answer.certificate(i, k).map(Certificate::of),
         }
     }
 }
@@ -153,51 +153,52 @@ impl<'a> MomentHead<'a> {
     }
 }
 
-/// One object for each pedestrian and moment, with regions of these probabilities; fields as in `docs/program.md`.
+/// One object for each pedestrian and moment, of joint futures one for each moment, with regions of these
+/// probabilities; fields as in `docs/program.md`.
 ///
 /// # Errors
 /// A number that JSON does not have.
 pub fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, serde_json::Error> {
     let mut text = String::new();
     for moment in moments {
+        if moment.answer.is_joint() {
+            add_line(&scene_line(moment, regions), &mut text)?;
+            continue;
+        }
         for i in 0..moment.window.len() {
-            let hypotheses = (0..moment.forecast.hypotheses())
-                .map(|k| Hypothesis { weight: moment.forecast.weight(i, k), path: Path::of(moment, i, k) });
+            let forecast = moment.answer.forecast();
+            let hypotheses = (0..forecast.hypotheses())
+                .map(|k| Hypothesis { weight: forecast.weight(i, k), path: Path::of(moment, i, k) });
             let line = PedestrianLine {
                 moment: MomentHead::of(moment),
                 pedestrian: ObservedPedestrian::of(moment, i, regions),
                 frames: moment.frames(),
                 hypotheses: hypotheses.collect(),
             };
-            text += &serde_json::to_string(&line)?;
-            text.push('\n');
+            add_line(&line, &mut text)?;
         }
     }
     Ok(text)
 }
 
-/// One object for each moment, of joint futures.
-///
-/// # Errors
-/// As [`json_lines`].
-pub fn joint_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, serde_json::Error> {
-    let mut text = String::new();
-    for moment in moments {
-        let pedestrians = 0..moment.window.len();
-        let futures = (0..moment.forecast.hypotheses()).map(|k| Future {
-            weight: moment.forecast.weight(0, k),
-            paths: pedestrians.clone().map(|i| Path::of(moment, i, k)).collect(),
-        });
-        let groups = ddl_scene::groups(moment.window).into_iter();
-        let line = SceneLine {
-            moment: MomentHead::of(moment),
-            frames: moment.frames(),
-            futures: futures.collect(),
-            groups: groups.map(|group| group.into_iter().map(|i| moment.window.name(i)).collect()).collect(),
-            pedestrians: pedestrians.map(|i| ObservedPedestrian::of(moment, i, regions)).collect(),
-        };
-        text += &serde_json::to_string(&line)?;
-        text.push('\n');
+fn scene_line<'a>(moment: &Moment<'a>, regions: &[f64]) -> SceneLine<'a> {
+    let (pedestrians, forecast) = (0..moment.window.len(), moment.answer.forecast());
+    let futures = (0..forecast.hypotheses()).map(|k| Future {
+        weight: forecast.weight(0, k),
+        paths: pedestrians.clone().map(|i| Path::of(moment, i, k)).collect(),
+    });
+    let groups = ddl_scene::groups(moment.window).into_iter();
+    SceneLine {
+        moment: MomentHead::of(moment),
+        frames: moment.frames(),
+        futures: futures.collect(),
+        groups: groups.map(|group| group.into_iter().map(|i| moment.window.name(i)).collect()).collect(),
+        pedestrians: pedestrians.map(|i| ObservedPedestrian::of(moment, i, regions)).collect(),
     }
-    Ok(text)
+}
+
+fn add_line(line: &impl Serialize, text: &mut String) -> Result<(), serde_json::Error> {
+    *text += &serde_json::to_string(line)?;
+    text.push('\n');
+    Ok(())
 }

@@ -1,9 +1,8 @@
 //! A window with its forecast, as the file counts time.
 
-use crate::forecast::certified::CertifiedForecast;
-use ddl_core::{Forecast, HORIZON, OBSERVED, Window};
+use crate::forecast::answer::Answer;
+use ddl_core::{HORIZON, OBSERVED, Window};
 use ddl_data::{Clock, FrameNumber, SceneName};
-use ddl_dynamics::LyapunovCertificate;
 
 /// The forecast at one frame.
 #[derive(Debug, Clone, Copy)]
@@ -12,23 +11,16 @@ pub struct Moment<'a> {
     pub scene: Option<&'a SceneName>,
     /// The observed pedestrians.
     pub window: &'a Window,
-    /// Their forecast.
-    pub forecast: &'a Forecast,
-    /// The same forecast with its certificates, if they were asked for.
-    pub certified: Option<&'a CertifiedForecast>,
+    /// Their forecast, as it was asked for.
+    pub answer: &'a Answer,
     /// The clock of the window.
     pub clock: Clock,
 }
 
 impl<'a> Moment<'a> {
-    /// A forecast of one scene, without certificates.
-    pub fn new(window: &'a Window, forecast: &'a Forecast, clock: Clock) -> Self {
-        Self { scene: None, window, forecast, certified: None, clock }
-    }
-
-    /// The certificate of a pedestrian's hypothesis, if they were asked for.
-    pub fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
-        Some(self.certified?.certificate(i, hypothesis))
+    /// A moment of a place without scene names.
+    pub fn new(window: &'a Window, answer: &'a Answer, clock: Clock) -> Self {
+        Self { scene: None, window, answer, clock }
     }
 
     /// The name of a pedestrian in messages.

@@ -1,16 +1,14 @@
 //! What was observed of a recording, and what is doubtful about it.
 
+use crate::note::{MisfitNote, Note};
 use crate::tracks::timed::many_frames;
-use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, TIME_STEP, Window};
+use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, Setting, TIME_STEP, Window};
 use ddl_data::{Clock, Completeness, FrameNumber, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// Noise (m) from which on observed paths are smoothed.
-pub const NOISY: f64 = 0.04;
-
-/// What is assumed of recordings without common frames.
-pub const OWN_CLOCKS: &str = "each pedestrian has a clock of its own: moments are about 0.4 s apart";
+const NOISY: f64 = 0.04;
 
 /// Windows of 8 observed steps of a recording, one for each moment with pedestrians to forecast.
 #[derive(Debug, Clone)]
@@ -67,96 +65,92 @@ impl ObservedTracks {
     }
 
     /// Why there is no window; `None` if there is one.
-    pub fn problem(&self) -> Option<String> {
-        self.windows.is_empty().then(|| {
-            let too_few = if self.completeness == Completeness::Whole {
-                "was tracked for all 8 steps"
-            } else {
-                "has two rows that fit, at most 2 s apart"
-            };
-            let rate = if self.clock.counts_times() {
-                "; give".to_owned()
-            } else {
-                let step = steps_in_words(self.clock);
-                format!(" (a step of 0.4 s is taken as {step}); check --fps or --frame-step, and give")
-            };
-            format!("no pedestrian {too_few}{rate} --unit or --homography if positions are not in metres")
-        })
+    pub fn problem(&self) -> Option<NobodyObserved> {
+        let step = || (!self.clock.counts_times()).then(|| steps_in_words(self.clock));
+        self.windows.is_empty().then(|| NobodyObserved { completeness: self.completeness, step: step() })
     }
 
-    /// What was estimated and left out, a line each, because a forecast from two positions looks like any other.
-    pub fn estimated(&self) -> Vec<String> {
-        let mut told = Vec::new();
+    /// What was estimated and left out, because a forecast from two positions looks like any other.
+    pub fn estimated(&self) -> Vec<Note> {
+        let mut notes = Vec::new();
         let windows = self.windows.iter();
         let qualities: Vec<ObservationQuality> =
             windows.flat_map(|window| (0..window.len()).map(|i| window.quality(i))).collect();
         let late = qualities.iter().filter(|quality| !quality.is_whole()).count();
         let carried = qualities.iter().filter(|quality| quality.age > 0.0).count();
         if late + carried > 0 {
-            told.push(format!(
-                "note: of {} forecasts {late} are of pedestrians tracked for less than {OBSERVED} steps, and {carried} \
-                 of pedestrians last seen a little before (columns unseen and age); --whole and --max-age leave them \
-                 out",
-                qualities.len()
-            ));
+            notes.push(Note::Estimated { forecasts: qualities.len(), late, carried });
         }
-        if self.noise >= NOISY {
-            told.push(format!(
-                "note: the positions are noisy, {:.0} cm on each axis: observed paths are smoothed",
-                100.0 * self.noise
-            ));
-        }
-        told.extend(self.misfits().map(|words| format!("warning: {words}")));
-        told.extend(self.never_forecast().map(|words| format!("note: {words}")));
-        told.extend(self.missing());
-        told.extend(self.ends_early());
-        told
+        notes.extend(noise(self.noise));
+        let rest = [self.misfits(), self.never_forecast(), self.missing(), self.ends_early()];
+        notes.extend(rest.into_iter().flatten());
+        notes
     }
 
-    /// A sentence about rows that do not fit their tracks.
-    pub fn misfits(&self) -> Option<String> {
-        words_of_misfits(&self.recording, self.clock, &self.misfits, self.warning.as_ref())
+    /// The rows that do not fit their tracks.
+    pub fn misfits(&self) -> Option<Note> {
+        misfits_of(&self.recording, self.clock, &self.misfits, self.warning.as_ref())
     }
 
-    /// A sentence about pedestrians who are in no window, unless only those tracked for all 8 steps are asked for.
-    pub fn never_forecast(&self) -> Option<String> {
-        let mut missing = self.never_forecast.iter();
-        let first = missing.next().filter(|_| self.completeness != Completeness::Whole)?;
-        Some(format!(
-            "{} of {} pedestrians are never forecast, first {}: a forecast needs two rows that fit, at most 2 s apart",
-            self.never_forecast.len(),
-            self.recording.pedestrians().len(),
-            self.recording.names().of(*first)
-        ))
-    }
-
-    /// A note on a file that goes on after its last window.
-    fn ends_early(&self) -> Option<String> {
-        let last = self.windows.last()?.frames()[OBSERVED - 1];
-        let end = *self.recording.frames().last()?;
-        let gap = (end - last) as f64 * TIME_STEP / self.recording.frame_step() as f64;
-        (gap > LiveTracks::LONGEST_GAP).then(|| {
-            let [end, last] = [end, last].map(|tick| self.clock.words(tick));
-            format!("note: there is no forecast for the last frame of the file ({end}); the last one is at {last}")
+    /// The pedestrians who are in no window, unless only those tracked for all 8 steps are asked for.
+    pub fn never_forecast(&self) -> Option<Note> {
+        let first = self.never_forecast.first().filter(|_| self.completeness != Completeness::Whole)?;
+        Some(Note::NeverForecast {
+            count: self.never_forecast.len(),
+            of: self.recording.pedestrians().len(),
+            first: self.recording.names().of(*first),
         })
     }
 
-    /// A note on the pedestrians at the last moment who are in no window.
-    fn missing(&self) -> Option<String> {
+    fn ends_early(&self) -> Option<Note> {
+        let last = self.windows.last()?.frames()[OBSERVED - 1];
+        let end = *self.recording.frames().last()?;
+        let gap = (end - last) as f64 * TIME_STEP / self.recording.frame_step() as f64;
+        let [end, last] = [end, last].map(|tick| self.clock.words(tick));
+        (gap > LiveTracks::LONGEST_GAP).then_some(Note::EndsEarly { end, last })
+    }
+
+    fn missing(&self) -> Option<Note> {
         let window = self.windows.last().filter(|_| self.completeness != Completeness::Whole)?;
         let last = window.frames()[OBSERVED - 1];
         let rows = self.recording.at(last);
         let is_missing = |row: &&Observation| !window.pedestrians().contains(&row.pedestrian);
-        let missing = rows.iter().filter(is_missing).count();
-        (missing > 0).then(|| {
-            format!(
-                "note: {missing} of the {} pedestrians at {} are not forecast: it is their first row, or their \
-                 position is doubtful",
-                rows.len(),
-                self.clock.words(last)
-            )
-        })
+        let count = rows.iter().filter(is_missing).count();
+        (count > 0).then(|| Note::MissingAtEnd { count, of: rows.len(), when: self.clock.words(last) })
     }
+}
+
+/// No pedestrian can be forecast.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NobodyObserved {
+    completeness: Completeness,
+    /// A step of 0.4 s, of frame numbers.
+    step: Option<String>,
+}
+
+impl std::error::Error for NobodyObserved {}
+
+impl std::fmt::Display for NobodyObserved {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let too_few = match self.completeness {
+            Completeness::Whole => "was tracked for all 8 steps",
+            Completeness::Partial => "has two rows that fit, at most 2 s apart",
+        };
+        write!(to, "no pedestrian {too_few}")?;
+        match &self.step {
+            Some(step) => {
+                let [fps, frames] = [Setting::Fps, Setting::FrameStep];
+                write!(to, " (a step of 0.4 s is taken as {step}); check {fps} or {frames}, and give")?;
+            }
+            None => to.write_str("; give")?,
+        }
+        write!(to, " {} or {} if positions are not in metres", Setting::Unit, Setting::Homography)
+    }
+}
+
+/// A note if positions are so noisy that observed paths are smoothed.
+pub fn noise(metres: f64) -> Option<Note> {
+    (metres >= NOISY).then_some(Note::Noise { metres })
 }
 
 /// A step of 0.4 s as the file counts it.
@@ -175,29 +169,16 @@ pub fn in_frames(clock: Clock, mut warning: PlausibilityWarning) -> Plausibility
     warning
 }
 
-/// A sentence about rows that do not fit their tracks. With a warning of fast steps, nearly all positions are in other
+/// The rows that do not fit their tracks. With a warning of fast steps there is none: nearly all positions are in other
 /// units.
-pub fn words_of_misfits(
+pub fn misfits_of(
     recording: &Recording,
     clock: Clock,
     misfits: &[Misfit],
     warning: Option<&PlausibilityWarning>,
-) -> Option<String> {
-    if matches!(warning, Some(PlausibilityWarning::Fast { .. })) {
+) -> Option<Note> {
+    if misfits.is_empty() || matches!(warning, Some(PlausibilityWarning::Fast { .. })) {
         return None;
     }
-    Misfit::words(misfits, |misfit| {
-        let name = recording.names().of(misfit.pedestrian);
-        format!("pedestrian {name} at {}", clock.words(misfit.tick))
-    })
-}
-
-/// The warning with the options of the program that correct its cause.
-pub fn words_of_warning(warning: &PlausibilityWarning) -> String {
-    let options = match warning {
-        PlausibilityWarning::Fast { .. } => " (--unit, --homography, or --fps of frame numbers)",
-        PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps => " (--fps of frame numbers)",
-        _ => "",
-    };
-    format!("{warning}{options}")
+    Some(Note::Misfits { scene: None, misfits: MisfitNote::all(misfits, recording.names(), clock) })
 }

@@ -1,8 +1,9 @@
 //! Rows of a file on the clock of their frames, with what was assumed about it.
 
 use crate::error::DdlError;
+use crate::note::Note;
 use crate::run::track_units::TrackUnits;
-use ddl_core::TIME_STEP;
+use ddl_core::{Setting, TIME_STEP};
 use ddl_data::{Clock, ClockError, Recording};
 
 /// Rates with a smaller relative difference count as equal.
@@ -16,10 +17,10 @@ pub struct TimedRecording {
     pub recording: Recording,
     /// The clock of its frames or times.
     pub clock: Clock,
-    /// A sentence on its frame step, if nobody gives the rate.
-    pub guessed: Option<String>,
-    /// Sentences on what the reader assumed or left out, and on its rate.
-    pub notes: Vec<String>,
+    /// Its frame step, if nobody gives the rate.
+    pub guessed: Option<Note>,
+    /// What the reader assumed or left out, and its rate.
+    pub notes: Vec<Note>,
 }
 
 impl TimedRecording {
@@ -28,18 +29,16 @@ impl TimedRecording {
     /// # Errors
     /// [`DdlError::Rate`] if a rate is given for rows with times, [`DdlError::Clock`] for a rate out of range.
     pub fn new(rows: &Recording, given: &TrackUnits, remembered: &TrackUnits) -> Result<Self, DdlError> {
-        if let (Some(option), Some(_)) = (given.rate_option(), rows.time_unit()) {
-            return Err(DdlError::Rate { option });
+        if let (Some(given), Some(_)) = (given.rate_setting(), rows.time_unit()) {
+            return Err(DdlError::Rate { given });
         }
-        let mut notes = rows.notes().to_vec();
+        let mut notes: Vec<Note> = rows.notes().iter().cloned().map(Note::Reader).collect();
         notes.extend(note_of_rate(rows, given, remembered));
         let stated = || rows.stated_clock().transpose();
         let clock = given.clock()?.map_or_else(stated, |clock| Ok(Some(clock)))?;
         let clock = clock.map_or_else(|| remembered.clock(), |clock| Ok(Some(clock)))?;
-        let guessed = clock.is_none().then(|| {
-            let step = many_frames(rows.frame_step());
-            format!("a step of 0.4 s is taken as {step}; give --fps, --dt or --frame-step if this is wrong")
-        });
+        let step = || many_frames(rows.frame_step());
+        let guessed = clock.is_none().then(|| Note::AssumedStep { step: step() });
         let clock = clock.map_or_else(|| Clock::with_frame_step(rows.frame_step()), Ok)?;
         Ok(Self { notes, recording: rows.on_clock(clock)?, clock, guessed })
     }
@@ -55,11 +54,11 @@ impl TrackUnits {
         self.frame_time().map(Clock::with_frame_time).or(of_step).transpose()
     }
 
-    /// The rate as an option of the program, such as `--fps 25`.
-    pub fn rate_option(&self) -> Option<String> {
-        let fps = self.fps.map(|fps| format!("--fps {fps}"));
-        let dt = self.dt.map(|dt| format!("--dt {dt}"));
-        let step = self.frame_step.map(|step| format!("--frame-step {step}"));
+    /// The rate as it was given, such as `fps 25`.
+    pub fn rate_setting(&self) -> Option<String> {
+        let fps = self.fps.map(|fps| Setting::Fps.to(fps));
+        let dt = self.dt.map(|dt| Setting::Dt.to(dt));
+        let step = self.frame_step.map(|step| Setting::FrameStep.to(step));
         dt.or(fps).or(step)
     }
 
@@ -70,20 +69,20 @@ impl TrackUnits {
 }
 
 /// A note if the rate in the file differs from the one given, remembered or guessed.
-fn note_of_rate(rows: &Recording, given: &TrackUnits, remembered: &TrackUnits) -> Option<String> {
+fn note_of_rate(rows: &Recording, given: &TrackUnits, remembered: &TrackUnits) -> Option<Note> {
     let (rate, told) = (rows.rate()?, rows.stated_frame_time()?);
     let apart = rows.frame_step();
     let of_step = |step: i64| TIME_STEP / step as f64;
-    let option = given.rate_option();
+    let option = given.rate_setting();
     let otherwise = if option.is_some() { given } else { remembered };
     let otherwise = otherwise.frame_time().or(otherwise.frame_step.map(of_step));
     let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
     let scenes = format!("the file gives {rate} frames per second, and its frame numbers increase by {apart}");
-    let of_file = format!("--fps {}", (1e4 / told).round() / 1e4);
+    let of_file = Setting::Fps.to((1e4 / told).round() / 1e4);
     match option {
         _ if same => None,
-        None => Some(format!("{scenes}: read as {of_file}")),
-        Some(option) => Some(format!("read as {option}, although {scenes} ({of_file})")),
+        None => Some(Note::Reader(format!("{scenes}: read as {of_file}"))),
+        Some(option) => Some(Note::Reader(format!("read as {option}, although {scenes} ({of_file})"))),
     }
 }
 

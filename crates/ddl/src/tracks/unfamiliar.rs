@@ -1,5 +1,6 @@
 //! Motions unlike the training motions, in words.
 
+use crate::note::Note;
 use crate::tracks::moment::Moment;
 use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
 
@@ -19,7 +20,7 @@ impl UnfamiliarMotions {
         for moment in moments {
             for i in 0..moment.window.len() {
                 self.motions += 1;
-                let familiarity = moment.forecast.familiarity(i);
+                let familiarity = moment.answer.forecast().familiarity(i);
                 if familiarity.is_some_and(|f| f < UNFAMILIAR_THRESHOLD) {
                     self.unfamiliar += 1;
                     let first = || format!("{} observed until {}", moment.who(i), moment.when());
@@ -30,14 +31,10 @@ impl UnfamiliarMotions {
     }
 
     /// A warning, if there are such motions; only once.
-    pub fn warning(&mut self) -> Option<String> {
+    pub fn warning(&mut self) -> Option<Note> {
         let first = self.first.as_ref().filter(|_| !self.is_told)?;
         self.is_told = true;
-        Some(format!(
-            "warning: {} of {} motions are unlike the training motions (familiarity below {}), first that of \
-             pedestrian {first}: their forecasts use little of the network, and their weights are flatter",
-            self.unfamiliar, self.motions, UNFAMILIAR_THRESHOLD
-        ))
+        Some(Note::Unfamiliar { count: self.unfamiliar, of: self.motions, first: first.clone() })
     }
 }
 
@@ -55,18 +52,18 @@ mod tests {
         let ids = vec![PedestrianId(4), PedestrianId(2)];
         let window = Window::new("yard", 70, 14, ids, vec![vec![[0.0, 1.0]; 8]; 2]).unwrap();
         let forecast = Forecast::with_equal_weights(2, 1, vec![[0.0; 2]; 24]).unwrap();
-        let forecast = forecast.with_familiarity(vec![0.010_1, 0.009_9]).unwrap();
+        let answer = forecast.with_familiarity(vec![0.010_1, 0.009_9]).unwrap().into();
         let hall = SceneName::new("hall").unwrap();
-        let moment = Moment { scene: Some(&hall), ..Moment::new(&window, &forecast, clock) };
+        let moment = Moment { scene: Some(&hall), ..Moment::new(&window, &answer, clock) };
         assert_eq!((moment.microseconds(), moment.observed_until()), (4_800_000, FrameNumber::Between(33.6)));
         let frames = moment.frames();
         assert_eq!((frames.len(), frames[0], frames[4]), (12, FrameNumber::Between(36.4), FrameNumber::Between(47.6)));
         let mut motions = UnfamiliarMotions::default();
         motions.add(&[moment, moment]);
-        let told = motions.warning().unwrap();
+        let told = motions.warning().unwrap().line();
         assert!(
             told.contains("2 of 4 motions") && told.contains("pedestrian 2 of scene hall observed until frame 33.6")
         );
-        assert_eq!(motions.warning(), None);
+        assert!(motions.warning().is_none());
     }
 }

@@ -1,12 +1,15 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
-use crate::command::forecast::moment::{SceneWindows, StreamState};
-use crate::command::forecast::stream::{Answer, OutputFormat, StreamOptions, answer};
+use crate::command::forecast::answer::answer;
+use crate::command::forecast::plans::{GivenPlanOptions, tell_doubts_of_ego};
+use crate::command::forecast::state::StreamState;
+use crate::command::forecast::stream::{AnsweringCommand, OutputFormat, StreamOptions};
 use crate::command::forecast::table;
-use crate::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use anyhow::bail;
 use clap::Args;
-use ddl::{CertifiedForecast, Ddl, Forecaster as _, Moment, joint_lines, json_lines};
+use ddl::data::Window;
+use ddl::scene::Plan;
+use ddl::{Moment, Request, json_lines};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 
@@ -70,39 +73,25 @@ impl ForecastCommand {
     }
 }
 
-impl Answer for ForecastCommand {
+impl AnsweringCommand for ForecastCommand {
     fn stream(&self) -> &StreamOptions {
         &self.stream
     }
 
-    fn forecasts(
-        &self,
-        model: &Ddl,
-        windows: SceneWindows<'_>,
-        state: &mut StreamState,
-    ) -> anyhow::Result<Vec<CertifiedForecast>> {
+    fn request(&self, windows: &[Window], state: &mut StreamState) -> anyhow::Result<Request> {
         let given = self.given.read()?;
-        if let Some(given) = &given {
-            for window in windows.windows {
-                tell_doubts_of_ego(self.given.ego.as_deref(), &[&given.plan], window, state);
-            }
+        for window in given.iter().flat_map(|_| windows) {
+            let plans: Vec<&Plan> = given.iter().map(|given| &given.plan).collect();
+            tell_doubts_of_ego(self.given.ego.as_deref(), &plans, window, state);
         }
-        let some = windows.windows;
-        let plain = |forecasts: Vec<ddl::Forecast>| forecasts.into_iter().map(Into::into).collect();
-        let mut forecasts: Vec<CertifiedForecast> = match (self.joint, self.certificate, self.one) {
-            (true, true, _) => model.forecast_scenes_certified(some)?,
-            (true, false, _) => plain(model.forecast_scenes(some, given.as_ref())?),
-            (false, false, false) => plain(model.forecast_all(some)?),
-            (false, false, true) => plain(model.forecast_central(some)?),
-            (false, true, false) => model.forecast_certified(some)?,
-            (false, true, true) => model.forecast_central_certified(some)?,
+        let mut request = match (given, self.joint, self.one) {
+            (Some(plan), ..) => Request::given(plan),
+            (None, true, _) => Request::joint(),
+            (None, false, true) => Request::one(),
+            (None, false, false) => Request::default(),
         };
-        if !self.region.is_empty() && !self.joint {
-            for (i, one) in forecasts.iter_mut().enumerate() {
-                one.forecast = state.adapted(windows, i, one.forecast.clone());
-            }
-        }
-        Ok(forecasts)
+        (request.certificates, request.adaptive_regions) = (self.certificate, !self.region.is_empty());
+        Ok(request)
     }
 
     fn log(&self, moments: &[Moment<'_>], log: &mut ForecastLog<&mut File>) -> anyhow::Result<()> {
@@ -113,7 +102,8 @@ impl Answer for ForecastCommand {
             bail!("MCAP has no place for --certificate and --region: leave them out, or write another file");
         }
         for moment in moments {
-            log.add(moment.window, moment.forecast, self.joint, moment.microseconds())?;
+            let (forecast, is_joint) = (moment.answer.forecast(), moment.answer.is_joint());
+            log.add(moment.window, forecast, is_joint, moment.microseconds())?;
         }
         Ok(())
     }
@@ -121,8 +111,7 @@ impl Answer for ForecastCommand {
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         let headed = state.is_first_text();
         match self.stream.format(self.format) {
-            OutputFormat::Csv => table::csv(moments, headed, &self.region, self.joint),
-            OutputFormat::Jsonl if self.joint => Ok(joint_lines(moments, &self.region)?),
+            OutputFormat::Csv => table::csv(moments, headed, &self.region),
             OutputFormat::Jsonl => Ok(json_lines(moments, &self.region)?),
         }
     }

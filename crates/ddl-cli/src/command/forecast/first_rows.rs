@@ -2,7 +2,8 @@
 
 #![expect(clippy::ref_option, reason = "the keys of the map of scenes")]
 
-use crate::recordings;
+use crate::telling::tell_note;
+use ddl::Note;
 use ddl::data::{LiveTracks, Observation, PedestrianId, PlausibilityWarning, Position, Recording, SceneName};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -72,7 +73,7 @@ impl FirstRows {
         if let Some(rows) = self.scenes.get_mut(scene).filter(is_wanted) {
             rows.is_looked_at = true;
             if let Some(warning @ PlausibilityWarning::Fast { .. }) = rows.warning().filter(|_| !self.is_told) {
-                recordings::warn_of(&warning);
+                tell_note(&Note::Implausible(warning));
                 self.is_told = true;
             }
         }
@@ -98,7 +99,7 @@ impl SceneRows {
         match warning {
             None | Some(PlausibilityWarning::Jump { .. } | PlausibilityWarning::NoSteps) => false,
             Some(warning) => {
-                recordings::warn_of(&warning);
+                tell_note(&Note::Implausible(warning));
                 true
             }
         }

@@ -2,8 +2,8 @@
 
 use crate::telling::{tell, words};
 use anyhow::anyhow;
-use ddl::LiveScenes;
-use ddl::data::{Misfit, MisfitTreatment};
+use ddl::data::{MisfitTreatment, SceneName};
+use ddl::{MisfitNote, Note, WaitingWindows};
 use std::time::{Duration, Instant};
 
 /// Time between two messages of a kind, so that many invalid lines do not cause as many messages.
@@ -73,13 +73,15 @@ impl LeftOut {
     }
 
     /// Reports rows of a frame that were left out, and tracks that begin anew.
-    pub(super) fn doubtful(&mut self, rows: usize, misfits: &[Misfit], place: impl Fn(&Misfit) -> String) {
+    pub(super) fn doubtful(&mut self, rows: usize, scene: Option<&SceneName>, misfits: &[MisfitNote]) {
         self.rows += rows;
         self.frames += 1;
         for treatment in [MisfitTreatment::LeftOut, MisfitTreatment::BegunAnew] {
-            let some: Vec<Misfit> = misfits.iter().filter(|it| it.treatment == treatment).copied().collect();
-            let doubt = Misfit::words(&some, &place);
-            self.of_treatment(treatment).tell(some.len(), doubt);
+            let some = misfits.iter().filter(|noted| noted.misfit.treatment == treatment).cloned();
+            let (some, scene): (Vec<MisfitNote>, _) = (some.collect(), scene.cloned());
+            let rows = some.len();
+            let doubt = (rows > 0).then(|| Note::Misfits { scene, misfits: some }.to_string());
+            self.of_treatment(treatment).tell(rows, doubt);
         }
         let doubtful = self.doubtful.count + self.begun_anew.count;
         let are_most = self.rows >= MANY_ROWS && 2 * doubtful > self.rows as u64;
@@ -116,18 +118,18 @@ impl LeftOut {
     }
 
     /// Reports the frames that were dropped so far.
-    pub(super) fn dropped(&mut self, scenes: &LiveScenes) {
-        self.dropped.count = scenes.dropped();
+    pub(super) fn dropped(&mut self, waiting: &WaitingWindows) {
+        self.dropped.count = waiting.dropped();
         if let Some(new) = self.dropped.take_due() {
             tell(format_args!("warning: {} not forecast, because a later one of the scene came first", frames(new)));
         }
     }
 
     /// Reports the totals at the end of the stream; an error if lines were invalid.
-    pub(super) fn end(&self, forecast: u64, scenes: Option<&LiveScenes>) -> anyhow::Result<()> {
-        let dropped = scenes.map_or(0, LiveScenes::dropped);
+    pub(super) fn end(&self, forecast: u64, waiting: Option<&WaitingWindows>) -> anyhow::Result<()> {
+        let dropped = waiting.map_or(0, WaitingWindows::dropped);
         if dropped > 0 {
-            let most = scenes.and_then(LiveScenes::most_dropped);
+            let most = waiting.and_then(WaitingWindows::most_dropped);
             let most = most.map(|(scene, count)| format!(", most of them of scene {scene} ({count})"));
             tell(format_args!(
                 "note: {} forecast, and {dropped} dropped, because a later one came first{}",

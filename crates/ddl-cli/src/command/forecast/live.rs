@@ -2,17 +2,16 @@
 
 use crate::command::forecast::first_rows::FirstRows;
 use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime};
-use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
-use crate::command::forecast::moment::{SceneWindows, StreamState};
-use crate::command::forecast::stream::{Answer, StreamOptions, text_of};
+use crate::command::forecast::state::StreamState;
+use crate::command::forecast::stream::{AnsweringCommand, StreamOptions, answers_of};
 use crate::interrupt::Interrupt;
 use crate::output::file_of;
-use crate::telling::{tell, words};
+use crate::telling::{tell, tell_note, words};
 use crate::units::Units;
 use anyhow::{Context as _, bail};
 use ddl::data::{Clock, Frame, Homography, LiveTracks, Observation, SceneName, Window};
-use ddl::{Ddl, LiveScenes, steps_in_words};
+use ddl::{Ddl, Moment, Note, Request, SceneBatch, SceneWindows, Session, SessionMemory, steps_in_words};
 use std::fs::File;
 use std::io::{Write as _, stdout};
 use std::path::Path;
@@ -31,13 +30,18 @@ const SEVERAL_FRAMES: usize = 10;
 const MOST_TAKEN: usize = 4096;
 
 /// Forecasts every frame as soon as it is complete, until standard input ends or the reader closes the output.
-pub(super) fn run(command: &dyn Answer) -> anyhow::Result<()> {
+pub(super) fn run(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
     let model = command.stream().load()?;
-    let memory = command.stream().memory.as_deref();
-    let watching =
-        WatchedStream { scenes: None, memory: memory.map(|path| KeptMemory::open(path, &model)).transpose()? };
-    let watching = Arc::new(Mutex::new(watching));
-    if memory.is_some() {
+    let memory = match command.stream().memory.as_deref() {
+        Some(path) => {
+            model.goal_model().recalled_per_pedestrian()?;
+            Some(SessionMemory::at(path)?)
+        }
+        None => None,
+    };
+    let is_remembering = memory.is_some();
+    let watching = Arc::new(Mutex::new(WatchedStream { session: None, memory }));
+    if is_remembering {
         // After Ctrl-C, the thread of the handler writes the memory.
         let of_handler = Arc::clone(&watching);
         Interrupt::catch_until(2, move |_| {
@@ -47,7 +51,7 @@ pub(super) fn run(command: &dyn Answer) -> anyhow::Result<()> {
             std::process::exit(130);
         })?;
     }
-    let answered = answer(command, &model, &watching);
+    let answered = answer(command, &Arc::new(model), &watching);
     // The memory is also written if the stream ended with an error.
     let written = lock(&watching).end();
     if let (Err(_), Err(error)) = (&answered, &written) {
@@ -56,7 +60,7 @@ pub(super) fn run(command: &dyn Answer) -> anyhow::Result<()> {
     answered.and(written)
 }
 
-fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) -> anyhow::Result<()> {
+fn answer(command: &dyn AnsweringCommand, model: &Arc<Ddl>, watching: &Mutex<WatchedStream>) -> anyhow::Result<()> {
     let forecast = command.stream();
     let units = forecast.tracks.live_units(model.config())?;
     let homography = units.homography()?;
@@ -65,7 +69,7 @@ fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) ->
     }
     let clock = units.live_clock()?;
     if let Some(clock) = clock {
-        begin(forecast, model, watching, clock)?;
+        lock(watching).begin(forecast, model, clock)?;
     }
     let mut stream = Stream {
         command,
@@ -91,7 +95,8 @@ fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) ->
     if !forecast.latest && !forecast.tracks.are_thinned() {
         stream.left_out.tell_if_few(1, 1);
     }
-    stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
+    let waiting = lock(watching).session.as_ref().map(|session| session.waiting().clone());
+    stream.left_out.end(stream.answered, waiting.as_ref())?;
     if stream.is_empty {
         bail!(
             "standard input holds no tracks, or only rows that are left out (vehicles, lost positions, the pedestrian \
@@ -107,81 +112,60 @@ fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) ->
     Ok(())
 }
 
-/// Creates the scenes, as soon as the clock is known.
-fn begin(forecast: &StreamOptions, model: &Ddl, watching: &Mutex<WatchedStream>, clock: Clock) -> anyhow::Result<()> {
-    let scenes = LiveScenes::new(forecast.tracks.windows_of(LiveTracks::with_clock(clock)));
-    let scenes = if forecast.latest { scenes.latest_only() } else { scenes };
-    let mut watching = lock(watching);
-    let WatchedStream { scenes: to, memory } = &mut *watching;
-    let scenes = to.insert(scenes);
-    match memory {
-        // Without scene names there is one memory file: its errors are reported before the first frame.
-        Some(memory) => memory.begin(None, scenes, model),
-        None => Ok(()),
-    }
-}
-
-/// The scenes of the stream, and their memories.
+/// The scenes of the stream, and where their memories are.
 struct WatchedStream {
     /// `None` until the clock is known.
-    scenes: Option<LiveScenes>,
-    memory: Option<KeptMemory>,
+    session: Option<Session<Arc<Ddl>>>,
+    /// Until the session has it.
+    memory: Option<SessionMemory>,
 }
 
-/// Ignores a panic of the other thread: scenes and memories are consistent after every call.
+/// Ignores a panic of the other thread: the session is consistent after every call.
 fn lock(watching: &Mutex<WatchedStream>) -> MutexGuard<'_, WatchedStream> {
     watching.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl WatchedStream {
-    /// Ends the scenes that have been idle, when another one begins.
-    fn forget_idle(&mut self) -> (Vec<SceneName>, anyhow::Result<()>) {
-        let Some(scenes) = &mut self.scenes else {
-            return (Vec::new(), Ok(()));
-        };
-        let (idle, mut ended) = (scenes.idle(), Ok(()));
-        for scene in &idle {
-            if let Some(memory) = &mut self.memory {
-                ended = ended.and(memory.end(Some(scene), scenes));
-            }
-            scenes.forget(Some(scene));
-        }
-        (idle, ended)
+    /// Begins the session, as soon as the clock is known. Without scene names there is one memory file: its errors are
+    /// reported before the first frame.
+    fn begin(&mut self, forecast: &StreamOptions, model: &Arc<Ddl>, clock: Clock) -> anyhow::Result<()> {
+        let tracks = forecast.tracks.windows().tracks(LiveTracks::with_clock(clock))?;
+        let session = Session::new(Arc::clone(model), tracks, Request::default())?;
+        let session = session.remembering(self.memory.take().unwrap_or_default())?;
+        self.session = Some(if forecast.latest { session.latest_only() } else { session });
+        Ok(())
     }
 
-    fn observe(&mut self, frame: Frame, model: &Ddl) -> anyhow::Result<()> {
-        let Some(scenes) = &mut self.scenes else {
-            return Ok(());
-        };
-        let Some(memory) = &mut self.memory else {
-            return Ok(scenes.observe_frame(frame)?);
-        };
-        let name = frame.scene.clone();
-        // A scene whose memory cannot be used is forecast without memory.
-        let begun = memory.begin(name.as_ref(), scenes, model);
-        scenes.observe_frame(frame)?;
-        memory.tell_refusal(name.as_ref(), scenes);
-        begun
+    /// Refuses a memory of one place for a stream of several scenes, and one of several for a stream of one.
+    fn ensure_memory_fits(&self, scene: Option<&SceneName>) -> anyhow::Result<()> {
+        let memory = self.memory.as_ref().or(self.session.as_ref().map(Session::memory));
+        Ok(memory.map_or(Ok(()), |memory| memory.ensure_fits(scene)).context("--memory")?)
     }
 
-    fn write_when_due(&mut self) {
-        if let (Some(memory), Some(scenes)) = (&mut self.memory, &self.scenes) {
-            memory.write_when_due(scenes);
-        }
+    /// Number of windows that wait for an answer.
+    fn waiting(&self) -> usize {
+        self.session.as_ref().map_or(0, |session| session.waiting().count())
     }
 
+    /// Writes the memories; the first error of several is returned.
     fn end(&mut self) -> anyhow::Result<()> {
-        match (&mut self.memory, &mut self.scenes) {
-            (Some(memory), Some(scenes)) => memory.end_all(scenes),
-            _ => Ok(()),
+        let notes = self.session.as_mut().map(Session::close).unwrap_or_default();
+        let mut failed = None;
+        for note in notes {
+            match note {
+                Note::MemoryFailed(error) if failed.is_none() => failed = Some(error),
+                Note::MemoryUnsaved { is_refusal_told: true, .. } => {}
+                note => tell_note(&note),
+            }
         }
+        failed.map_or(Ok(()), |error| Err(error.into()))
     }
 }
 
 struct Stream<'a> {
-    command: &'a dyn Answer,
+    command: &'a dyn AnsweringCommand,
     forecast: &'a StreamOptions,
-    model: &'a Ddl,
+    model: &'a Arc<Ddl>,
     watching: &'a Mutex<WatchedStream>,
     homography: Option<Homography>,
     /// `None` until it is known.
@@ -206,7 +190,7 @@ impl Stream<'_> {
     /// forecast.
     fn follow(&mut self, frames: &IncomingFrames, units: &Units) -> anyhow::Result<()> {
         let wrong = loop {
-            let waiting = self.waiting();
+            let waiting = lock(self.watching).waiting();
             let is_full = if self.forecast.latest {
                 self.taken >= MOST_TAKEN && waiting > 0
             } else {
@@ -232,25 +216,18 @@ impl Stream<'_> {
             }
         };
         // Frames before the invalid line are still forecast.
-        while self.waiting() > 0 {
+        while lock(self.watching).waiting() > 0 {
             self.answer_batch()?;
         }
         wrong.map_or(Ok(()), Err)
-    }
-
-    fn waiting(&self) -> usize {
-        let watching = lock(self.watching);
-        watching.scenes.as_ref().map_or(0, LiveScenes::waiting)
     }
 
     fn take(&mut self, frame: Frame, stated: &StatedTime, units: &Units) -> anyhow::Result<()> {
         for note in &stated.notes {
             tell(format_args!("note: {note}"));
         }
-        if std::mem::take(&mut self.is_empty)
-            && let Some(memory) = &lock(self.watching).memory
-        {
-            memory.ensure_fits(frame.scene.as_ref())?;
+        if std::mem::take(&mut self.is_empty) {
+            lock(self.watching).ensure_memory_fits(frame.scene.as_ref())?;
         }
         self.state.tell_other_rate(units, stated);
         self.taken += 1;
@@ -268,7 +245,7 @@ impl Stream<'_> {
                     steps_in_words(clock)
                 ));
             }
-            begin(self.forecast, self.model, self.watching, clock)?;
+            lock(self.watching).begin(self.forecast, self.model, clock)?;
             self.clock = Some(clock);
         }
         if let (Some(option), Some(_)) = (units.rate_given(), stated.time_unit) {
@@ -289,72 +266,80 @@ impl Stream<'_> {
     fn observe(&mut self, frame: Frame) -> anyhow::Result<()> {
         let frame = to_ground(frame, self.homography.as_ref())?;
         let mut watching = lock(self.watching);
-        let (idle, ended) = if frame.is_first { watching.forget_idle() } else { (Vec::new(), Ok(())) };
-        for scene in idle {
-            self.state.forget(&scene);
-        }
-        let (scene, rows) = (frame.scene.clone(), frame.pedestrians.len());
-        let names = frame.names.clone();
-        let is_watched = self.first_rows.watches(&scene);
-        let pedestrians = is_watched.then(|| frame.pedestrians.clone());
-        let observed = watching.observe(frame, self.model);
-        let scenes = watching.scenes.as_ref();
-        let tracks = scenes.and_then(|scenes| scenes.tracks(scene.as_ref()));
-        if let (true, Some(tracks)) = (observed.is_ok(), tracks) {
-            if let Some(pedestrians) = pedestrians {
-                self.first_rows.add(&scene, tracks, &pedestrians);
+        let Some(session) = &mut watching.session else {
+            return Ok(());
+        };
+        let scene = frame.scene.as_ref();
+        let mut notes = if frame.is_first { session.begin_again(scene) } else { Vec::new() };
+        let observed = session.observe(scene, frame.number, frame.pedestrians.iter().copied(), &frame.names);
+        let (seen, failed) = match observed {
+            Ok(seen) => (Some(seen), None),
+            Err(error) => (None, Some(error)),
+        };
+        let tracks = seen.as_ref().and_then(|_| session.tracks(scene));
+        notes.extend(seen.into_iter().flatten());
+        if let Some(tracks) = tracks {
+            if self.first_rows.watches(&frame.scene) {
+                self.first_rows.add(&frame.scene, tracks, &frame.pedestrians);
             }
-            let place = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
-            self.left_out.doubtful(rows, tracks.misfits(), |misfit| {
-                let name = names.of(misfit.pedestrian);
-                format!("pedestrian {name}{place} at {}", tracks.clock().words(misfit.tick))
-            });
+            let misfits = notes.iter().map(Note::misfits).find(|misfits| !misfits.is_empty());
+            self.left_out.doubtful(frame.pedestrians.len(), scene, misfits.unwrap_or_default());
             self.observed += 1;
             self.state.tell_doubts(tracks, self.observed, self.forecast.tracks.are_thinned());
-            let is_idle = watching.scenes.as_ref().is_some_and(|scenes| scenes.waiting() == 0);
+            let is_idle = session.waiting().count() == 0;
             if is_idle && !self.forecast.latest && !self.forecast.tracks.are_thinned() {
                 self.left_out.tell_if_few(MANY_ROWS, SEVERAL_FRAMES);
             }
         }
-        observed.and(ended)
+        for note in notes {
+            match note {
+                Note::Misfits { .. } => {}
+                // The scenes go on.
+                Note::MemoryFailed(error) => self.left_out.wrong(&error.into()),
+                note => tell_note(&note),
+            }
+        }
+        failed.map_or(Ok(()), |error| Err(error.into()))
     }
 
     fn answer_batch(&mut self) -> anyhow::Result<()> {
         self.taken = 0;
         let batch = {
             let mut watching = lock(self.watching);
-            watching.write_when_due();
-            let Some(scenes) = &mut watching.scenes else {
+            let Some(session) = &mut watching.session else {
                 return Ok(());
             };
-            self.left_out.dropped(scenes);
-            scenes.next_batch(LiveScenes::BATCH)
+            self.left_out.dropped(session.waiting());
+            session.next_batch(SceneBatch::PEDESTRIANS)
         };
         for (window, scene) in batch.windows.iter().zip(&batch.scenes) {
             if self.first_rows.watches(scene) && (0..window.len()).any(|i| window.quality(i).is_whole()) {
                 self.first_rows.warn_if_fast(scene);
             }
         }
-        match self.text(&batch.windows, &batch.scenes) {
+        match self.text(batch.windows()) {
             Ok(text) => return self.write(&text, &batch.windows),
             // The error does not name its window, so the windows are forecast one by one.
             Err(_) if batch.windows.len() > 1 => {}
             Err(error) => return self.failed(error, batch.scenes.iter().any(Option::is_some)),
         }
-        for (window, scene) in batch.windows.iter().zip(&batch.scenes) {
-            let one = (std::slice::from_ref(window), std::slice::from_ref(scene));
-            match self.text(one.0, one.1) {
-                Ok(text) => self.write(&text, one.0)?,
-                Err(error) => self.failed(error, scene.is_some())?,
+        for one in batch.each() {
+            match self.text(one.windows()) {
+                Ok(text) => self.write(&text, &one.windows)?,
+                Err(error) => self.failed(error, one.scenes.iter().any(Option::is_some))?,
             }
         }
         Ok(())
     }
 
-    fn text(&mut self, windows: &[Window], scenes: &[Option<SceneName>]) -> anyhow::Result<String> {
-        let windows = SceneWindows { windows, scenes };
+    fn text(&mut self, windows: SceneWindows<'_>) -> anyhow::Result<String> {
         let clock = self.clock.unwrap_or(Clock::STEPS);
-        text_of(self.command, self.model, windows, clock, &mut self.state)
+        let command = self.command;
+        let text = |moments: &[Moment<'_>], state: &mut StreamState| command.text(moments, state);
+        match &mut lock(self.watching).session {
+            Some(session) => answers_of(command, session, windows, clock, &mut self.state, text),
+            None => Ok(String::new()),
+        }
     }
 
     /// Leaves out a failed forecast of a named scene. Before the first forecast it is an error, because the arguments

@@ -1,17 +1,16 @@
-//! The commands that answer every moment of a file of tracks or of live tracks.
+//! The options and the answers of the commands that answer every moment of tracks.
 
-use crate::command::forecast::live;
-use crate::command::forecast::moment::{SceneWindows, StreamState, warn_of_violation};
+use crate::command::forecast::state::StreamState;
 use crate::command::{Machine, ModelChoice};
-use crate::interrupt::Interrupt;
-use crate::output::{file_of, write_file, write_parts};
+use crate::output::file_of;
 use crate::telling::tell;
-use crate::tracks::{TrackOptions, tell_what_was_estimated};
+use crate::tracks::TrackOptions;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
-use ddl::{CertifiedForecast, Ddl, DdlError, Moment};
+use ddl::{Ddl, Moment, Request, SceneWindows, Session};
 use ddl_mcap::ForecastLog;
+use std::borrow::Borrow;
 use std::fs::File;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
@@ -59,18 +58,12 @@ pub(crate) enum OutputFormat {
 }
 
 /// A command that answers moments with text.
-pub(crate) trait Answer {
+pub(crate) trait AnsweringCommand {
     fn stream(&self) -> &StreamOptions;
 
-    /// The forecasts that its answers need: the joint futures of each window.
-    fn forecasts(
-        &self,
-        model: &Ddl,
-        windows: SceneWindows<'_>,
-        _state: &mut StreamState,
-    ) -> anyhow::Result<Vec<CertifiedForecast>> {
-        let forecasts = model.forecast_scenes(windows.windows, None)?;
-        Ok(forecasts.into_iter().map(Into::into).collect())
+    /// What it asks of the model for these windows: the joint futures of each.
+    fn request(&self, _windows: &[Window], _state: &mut StreamState) -> anyhow::Result<Request> {
+        Ok(Request::joint())
     }
 
     /// About so many pedestrians are forecast and written at once.
@@ -88,97 +81,26 @@ pub(crate) trait Answer {
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String>;
 }
 
-/// The answers of a command for these windows, as text.
-pub(super) fn text_of(
-    command: &dyn Answer,
-    model: &Ddl,
+/// What a command makes of the answers to these windows.
+pub(super) fn answers_of<T, M: Borrow<Ddl>>(
+    command: &dyn AnsweringCommand,
+    session: &mut Session<M>,
     windows: SceneWindows<'_>,
     clock: Clock,
     state: &mut StreamState,
-) -> anyhow::Result<String> {
-    answers_of(command, model, windows, clock, state, |moments, state| command.text(moments, state))
-}
-
-fn answers_of<T>(
-    command: &dyn Answer,
-    model: &Ddl,
-    windows: SceneWindows<'_>,
-    clock: Clock,
-    state: &mut StreamState,
-    answers: impl FnOnce(&[Moment<'_>], &mut StreamState) -> anyhow::Result<T>,
+    make: impl FnOnce(&[Moment<'_>], &mut StreamState) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
-    let forecasts = command.forecasts(model, windows, state)?;
-    let moments = windows.moments(&forecasts, clock);
-    warn_of_violation(&moments, state);
+    session.ask(command.request(windows.windows, state)?)?;
+    let answers = session.answer(windows)?;
+    let moments = windows.moments(&answers, clock);
+    state.warn_of_violation(&moments);
     state.unfamiliar.add(&moments);
     if command.stream().tracks.are_live()
         && let Some(warning) = state.unfamiliar.warning()
     {
-        tell(format_args!("{warning}; this warning appears once, but each forecast has its familiarity"));
+        tell(format_args!("{}; this warning appears once, but each forecast has its familiarity", warning.line()));
     }
-    answers(&moments, state)
-}
-
-/// Answers every moment of the tracks.
-pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
-    let stream = command.stream();
-    stream.machine.prepare_for_little()?;
-    if stream.memory.is_some() && !stream.tracks.are_live() {
-        bail!(
-            "--memory is for live tracks from standard input, as in `ddl forecast - --memory FILE`: give \
-             `-` for the file"
-        );
-    }
-    if stream.latest && !stream.tracks.are_live() {
-        bail!("--latest is for tracks as they come; write them to standard input, and give `-` instead of a file");
-    }
-    let log = stream.output.as_deref().filter(|path| ddl_mcap::is_mcap(path));
-    if stream.tracks.are_live() {
-        if let Some(path) = log {
-            bail!("{}: MCAP is written from a file of tracks, not from standard input", path.display());
-        }
-        return live::run(command);
-    }
-    let model = stream.load()?;
-    let (observed, topic) = stream.tracks.observed(model.config())?;
-    let mut state = StreamState::default();
-    state.frame_id = topic.as_ref().and_then(|topic| topic.frame_id.clone());
-    let (mut lines, mut bytes) = (0, 0);
-    let interrupt = Interrupt::catch()?;
-    let parts = Window::parts(&observed.windows, command.at_once()).map(|windows| {
-        // No unfinished file is left.
-        if interrupt.flow().is_break() {
-            bail!(DdlError::Interrupted);
-        }
-        Ok(SceneWindows { windows, scenes: &[] })
-    });
-    if let Some(path) = log {
-        write_file(path, |file| {
-            let mut log = ForecastLog::new(file, topic.as_ref())?;
-            if let Some(frame) = log.assumed_frame() {
-                tell(format_args!("note: coordinate frame assumed: {frame}"));
-            }
-            for windows in parts {
-                let add = |moments: &[Moment<'_>], _: &mut StreamState| command.log(moments, &mut log);
-                answers_of(command, &model, windows?, observed.clock, &mut state, add)?;
-            }
-            Ok(log.finish()?)
-        })?;
-    } else {
-        let texts = parts.map(|windows| {
-            let text = text_of(command, &model, windows?, observed.clock, &mut state)?;
-            bytes += text.len();
-            lines += text.lines().count();
-            Ok(text)
-        });
-        write_parts(stream.output.as_deref(), texts)?;
-    }
-    if let Some(warning) = state.unfamiliar.warning() {
-        tell(format_args!("{warning}"));
-    }
-    stream.warn_of_flood(lines, bytes);
-    tell_what_was_estimated(&observed);
-    Ok(())
+    make(&moments, state)
 }
 
 impl StreamOptions {
@@ -197,7 +119,7 @@ impl StreamOptions {
     }
 
     /// Notes how to reduce large output: thousands of lines on a terminal, or a large file.
-    fn warn_of_flood(&self, lines: usize, bytes: usize) {
+    pub(super) fn warn_of_flood(&self, lines: usize, bytes: usize) {
         let on_terminal = file_of(self.output.as_deref()).is_none() && std::io::stdout().is_terminal();
         if on_terminal && lines > LOOKED_THROUGH {
             tell(format_args!(

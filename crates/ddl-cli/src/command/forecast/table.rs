@@ -48,30 +48,31 @@ const SCENE: &str = "scene";
 const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
 /// The table of these moments, with a column of radii for each requested region.
-pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64], joint: bool) -> anyhow::Result<String> {
+pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     if headed {
-        let certified = moments.iter().any(|moment| moment.certified.is_some());
+        let certified = moments.iter().any(|moment| !moment.answer.certificates().is_empty());
         let columns = COLUMNS.iter().chain(certified.then_some(&CERTIFIED).into_iter().flatten());
         let named = moments.iter().any(|moment| moment.scene.is_some());
         let columns = named.then_some(&SCENE).into_iter().chain(columns);
+        let joint = moments.iter().any(|moment| moment.answer.is_joint());
         let named = |name: &'static str| if joint && name == HYPOTHESIS { "future" } else { name };
         let names = columns.map(|&name| named(name).to_owned());
         writer.write_record(names.chain(regions.iter().map(|level| format!("radius_{level}"))))?;
     }
     for moment in moments {
-        let frames = moment.frames();
+        let (frames, forecast) = (moment.frames(), moment.answer.forecast());
         // One field if the tracks name scenes, otherwise no field.
         let scene = Vec::from_iter(moment.scene);
         for i in 0..moment.window.len() {
             let quality = moment.window.quality(i);
-            for hypothesis in 0..moment.forecast.hypotheses() {
-                let certificate = moment.certificate(i, hypothesis);
+            for hypothesis in 0..forecast.hypotheses() {
+                let certificate = moment.answer.certificate(i, hypothesis);
                 let holds = certificate.is_some_and(|certificate| certificate.verify().is_ok());
                 // The first distance belongs to the last observed position.
                 let mut distances = certificate.map(|certificate| certificate.potentials().skip(1));
-                let positions = moment.forecast.hypothesis(i, hypothesis);
-                let goal = moment.forecast.goal(i, hypothesis);
+                let positions = forecast.hypothesis(i, hypothesis);
+                let goal = forecast.goal(i, hypothesis);
                 let goal = goal.map(|goal| goal.map(table_metres));
                 for (t, (position, &frame)) in positions.iter().zip(&frames).enumerate() {
                     let [x, y] = position.map(table_metres);
@@ -79,7 +80,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64], joint: 
                         observed_until: moment.observed_until().rounded(),
                         pedestrian: moment.window.name(i),
                         hypothesis,
-                        weight: moment.forecast.weight(i, hypothesis),
+                        weight: forecast.weight(i, hypothesis),
                         goal_x: goal.map(|[x, _]| x),
                         goal_y: goal.map(|[_, y]| y),
                         frame: frame.rounded(),
@@ -88,10 +89,10 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64], joint: 
                         unseen: quality.unseen,
                         age: table_metres(quality.age),
                         uncertainty: table_metres(quality.uncertainty()),
-                        familiarity: moment.forecast.familiarity(i).map(table_share),
+                        familiarity: forecast.familiarity(i).map(table_share),
                     };
                     let radius = |&level: &f64| {
-                        let radius = moment.forecast.region_radius(i, hypothesis, t, level);
+                        let radius = forecast.region_radius(i, hypothesis, t, level);
                         radius.map(table_metres)
                     };
                     let radii: Vec<Option<f64>> = regions.iter().map(radius).collect();

@@ -1,9 +1,8 @@
 //! What is told once of a stream: its noise, clocks of its own, a rate that disagrees.
 
 use crate::command::forecast::frames::StatedTime;
-use crate::command::forecast::moment::StreamState;
+use crate::command::forecast::state::StreamState;
 use crate::units::Units;
-use ddl::NOISY;
 use ddl::data::{Clock, LiveTracks};
 
 /// Number of frames that show whether pedestrians have common ones.
@@ -22,12 +21,8 @@ impl StreamState {
 
     /// Tells of noise and of clocks of the pedestrians' own, after a number of frames.
     pub(super) fn tell_doubts(&mut self, tracks: &LiveTracks, frames: u64, are_thinned: bool) {
-        if tracks.noise().metres() >= NOISY {
-            let noise = 100.0 * tracks.noise().metres();
-            self.tell_once(
-                "noise",
-                format_args!("note: the positions are noisy, {noise:.0} cm on each axis: observed paths are smoothed"),
-            );
+        if let Some(note) = ddl::noise(tracks.noise().metres()) {
+            self.tell_once("noise", format_args!("{}", note.line()));
         }
         if frames >= MANY_FRAMES && !are_thinned && !tracks.have_common_frames() {
             self.tell_once(

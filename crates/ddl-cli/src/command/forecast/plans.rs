@@ -1,6 +1,6 @@
 //! Plans from files.
 
-use crate::command::forecast::StreamState;
+use crate::command::forecast::state::StreamState;
 use crate::small_file;
 use anyhow::{Context as _, bail};
 use clap::Args;

@@ -1,10 +1,11 @@
 //! The memory of a place, and the test whether a given memory is of this place.
 
-use crate::error::DdlError;
-use crate::model::ddl::Ddl;
-use ddl_core::{OBSERVED, PedestrianId, Position, Window};
-use ddl_memory::SceneMemory;
 use std::collections::BTreeSet;
+
+use ddl_core::{OBSERVED, PedestrianId, Position, Window};
+
+use crate::error::MemoryError;
+use crate::memory::SceneMemory;
 
 /// Two motions are similar if their squared distance is below this, which corresponds to 2 m.
 const ALIKE: f64 = 4.0;
@@ -28,8 +29,20 @@ pub struct PlaceMemory {
     /// Earlier pedestrians recalled for each pedestrian.
     count: usize,
     trial: Option<Trial>,
-    /// Why the given memory is no longer used.
-    refused: Option<String>,
+    refused: Option<Refusal>,
+}
+
+/// Why a given memory is no longer used: it is of another place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the memory is of another place, or the camera was moved: only {alike} of {tried} pedestrians moved like an earlier \
+     pedestrian in the memory"
+)]
+pub struct Refusal {
+    /// Number of pedestrians that it was tested on.
+    pub tried: usize,
+    /// Those of them who moved like an earlier one.
+    pub alike: usize,
 }
 
 /// The given memory, unchanged, until it is confirmed to be of this place.
@@ -44,16 +57,14 @@ struct Trial {
 const MIN_SEGMENTS: usize = 500;
 
 impl PlaceMemory {
-    /// Starts with an empty memory or one from a file; tracks that were running in it have ended.
-    ///
-    /// # Errors
-    /// When the model has no memory branch.
-    pub(crate) fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
-        let count = model.goal_model().recalled_per_pedestrian()?;
+    /// Starts with an empty memory or one from a file; tracks that were running in it have ended. `count` earlier
+    /// pedestrians are recalled for each pedestrian.
+    #[must_use]
+    pub fn new(mut memory: SceneMemory, count: usize) -> Self {
         memory.end_tracks();
         let is_tested = memory.segments() >= MIN_SEGMENTS;
         let trial = is_tested.then(|| Trial { given: memory.clone(), tried: BTreeSet::new(), alike: 0 });
-        Ok(Self { memory, count, trial, refused: None })
+        Self { memory, count, trial, refused: None }
     }
 
     /// The memory: the given one, with the frames observed since.
@@ -62,8 +73,8 @@ impl PlaceMemory {
     }
 
     /// The reason why the given memory is no longer used; `None` while it is.
-    pub fn refused(&self) -> Option<&str> {
-        self.refused.as_deref()
+    pub fn refused(&self) -> Option<Refusal> {
+        self.refused
     }
 
     /// The number of pedestrians that the given memory was tested on so far; `None` once the test is decided.
@@ -85,13 +96,13 @@ impl PlaceMemory {
     }
 
     /// Ends all tracks, as when a tracker restarts: any frame may follow.
-    pub(crate) fn end_tracks(&mut self) {
+    pub fn end_tracks(&mut self) {
         self.memory.end_tracks();
     }
 
     /// The window with the memory for its pedestrians. Call it before its last frame is [observed](Self::observe).
     #[must_use]
-    pub(crate) fn recalling(&self, window: Window) -> Window {
+    pub fn recalling(&self, window: Window) -> Window {
         self.memory.recalling(window, self.count)
     }
 
@@ -100,13 +111,13 @@ impl PlaceMemory {
     ///
     /// # Errors
     /// As [`SceneMemory::observe`]. The state is then unchanged.
-    pub(crate) fn observe(
+    pub fn observe(
         &mut self,
         frame: i64,
         pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
         begun: &[PedestrianId],
         window: Option<&Window>,
-    ) -> Result<(), DdlError> {
+    ) -> Result<(), MemoryError> {
         self.memory.observe_begun(frame, pedestrians, begun)?;
         if let (Some(trial), Some(window)) = (&mut self.trial, window) {
             trial.look_at(window);
@@ -121,11 +132,7 @@ impl PlaceMemory {
 
     fn refuse(&mut self) {
         if let Some(trial) = self.trial.take() {
-            let (tried, alike) = (trial.tried.len(), trial.alike);
-            self.refused = Some(format!(
-                "the memory is of another place, or the camera was moved: only {alike} of {tried} pedestrians moved \
-                 like an earlier pedestrian in the memory"
-            ));
+            self.refused = Some(Refusal { tried: trial.tried.len(), alike: trial.alike });
             self.memory = trial.given.empty_copy();
         }
     }
@@ -150,14 +157,9 @@ impl Trial {
 
 #[cfg(test)]
 pub(crate) mod tests {
-    use super::*;
-    use crate::run::builtin_model::BuiltinModel;
     use ddl_core::ObservationQuality;
-    use ddl_network::DeviceChoice;
 
-    pub(crate) fn model() -> Ddl {
-        Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap()
-    }
+    use super::*;
 
     fn position(t: i64, lane: f64) -> Position {
         [0.5 * t as f64, 0.2 * t as f64 + lane]
@@ -174,8 +176,8 @@ pub(crate) mod tests {
     }
 
     /// The memory of a place after so many pedestrians on each lane, so far (m) from that of the memory.
-    pub(crate) fn seen_after(model: &Ddl, memory: SceneMemory, lanes: &[(i64, f64)]) -> PlaceMemory {
-        let mut place = PlaceMemory::new(model, memory).unwrap();
+    pub(crate) fn seen_after(memory: SceneMemory, lanes: &[(i64, f64)]) -> PlaceMemory {
+        let mut place = PlaceMemory::new(memory, 20);
         let lanes = lanes.iter().flat_map(|&(count, lane)| vec![lane; count as usize]);
         for (id, lane) in (0..).zip(lanes) {
             let window_on = |lane: f64| {
@@ -198,9 +200,9 @@ pub(crate) mod tests {
     /// nothing.
     #[test]
     fn a_memory_is_refused_and_accepted_by_the_share_of_pedestrians_alike() {
-        let (model, given) = (model(), memory(55));
+        let given = memory(55);
         assert_eq!(given.segments(), 550);
-        let other = |alike, tried| Some(format!("only {alike} of {tried} pedestrians"));
+        let other = |alike, tried| Some(Refusal { tried, alike });
         for (lanes, finished, tested, refused) in [
             (&[(30, 2.3)][..], false, None, other(0, 30)),
             (&[(26, -2.3), (4, 1.95)], false, None, other(4, 30)),
@@ -213,14 +215,12 @@ pub(crate) mod tests {
             (&[(6, 2.3), (1, 1.95)], true, Some(7), None),
             (&[(5, 2.3), (1, 1.95)], true, None, None),
         ] {
-            let mut place = seen_after(&model, given.clone(), lanes);
+            let mut place = seen_after(given.clone(), lanes);
             if finished {
                 place.finish_test();
             }
             assert_eq!(place.under_test(), tested, "{lanes:?}");
-            let reason = place.refused().unwrap_or_default();
-            assert_eq!(place.refused().is_some(), refused.is_some(), "{lanes:?} {reason}");
-            assert!(reason.contains(&refused.clone().unwrap_or_default()), "{reason}");
+            assert_eq!(place.refused(), refused, "{lanes:?}");
             // Who was seen is remembered, unless the memory is of another place: then it begins anew.
             let (seen, summary) = (lanes.iter().map(|lane| lane.0).sum::<i64>() as u64, place.memory().summary());
             let expected = if refused.is_some() { (0, u64::from(!finished)) } else { (550, 55 + seen) };
@@ -228,7 +228,7 @@ pub(crate) mod tests {
             assert_eq!(place.memory().empty_copy(), given.empty_copy());
         }
         // Too few segments to be tested.
-        assert_eq!(seen_after(&model, memory(49), &[]).under_test(), None);
-        assert_eq!(seen_after(&model, memory(50), &[]).under_test(), Some(0));
+        assert_eq!(seen_after(memory(49), &[]).under_test(), None);
+        assert_eq!(seen_after(memory(50), &[]).under_test(), Some(0));
     }
 }

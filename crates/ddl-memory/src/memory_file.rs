@@ -1,12 +1,15 @@
 //! The file that stores the memory of a place between sessions.
 
-use crate::error::DdlError;
-use crate::live::place_memory::PlaceMemory;
-use crate::run::lock::RunLock;
-use ddl_memory::SceneMemory;
 use std::fs::File;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+
+use ddl_core::FileLock;
+
+use crate::error::MemoryError;
+use crate::memory::SceneMemory;
+use crate::place::{PlaceMemory, Refusal};
 
 /// The file of a scene memory. It is read at the start of a session and written during and at the end of it, by one
 /// process at a time.
@@ -19,7 +22,24 @@ pub struct MemoryFile {
     /// The path with links resolved.
     file: PathBuf,
     written: Instant,
-    _lock: RunLock,
+    _lock: FileLock,
+}
+
+/// Why a file is left unchanged at the end of a session.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[expect(missing_docs, reason = "the messages describe the fields")]
+pub enum Unsaved {
+    #[error(
+        "{}: {refusal}; the file is unchanged, and this watch is not saved in it; give another file for this place",
+        .path.display()
+    )]
+    OtherPlace { path: PathBuf, refusal: Refusal },
+    #[error(
+        "{}: {tried} pedestrians were observed for 8 time steps, too few to tell whether the memory is of this place; \
+         the file is unchanged",
+        .path.display()
+    )]
+    TooFew { path: PathBuf, tried: usize },
 }
 
 /// The interval between writes while frames arrive.
@@ -30,13 +50,14 @@ impl MemoryFile {
     ///
     /// # Errors
     /// When the file is not writable, another process writes it, or it holds no complete memory.
-    pub fn open(path: &Path) -> Result<(Self, Option<SceneMemory>), DdlError> {
+    pub fn open(path: &Path) -> Result<(Self, Option<SceneMemory>), MemoryError> {
         let file = resolved(path);
-        ensure_writable(&file).map_err(|error| {
-            let problem = format!("cannot write this file: {error}");
-            DdlError::io(path, std::io::Error::new(error.kind(), problem))
+        let unwritable = |source| MemoryError::Write { path: path.to_owned(), source };
+        ensure_writable(&file).map_err(unwritable)?;
+        let lock = FileLock::take_beside(&file).map_err(|error| match error.kind() {
+            ErrorKind::WouldBlock => MemoryError::Taken { path: path.to_owned() },
+            _ => unwritable(error),
         })?;
-        let lock = RunLock::take_file(&file)?;
         let read = file.exists().then(|| SceneMemory::read(path));
         let memory = read.transpose()?;
         let file = Self { path: path.to_owned(), file, written: Instant::now(), _lock: lock };
@@ -57,7 +78,7 @@ impl MemoryFile {
     ///
     /// # Errors
     /// When the file cannot be written; an earlier one is unchanged.
-    pub fn write(&mut self, place: &PlaceMemory) -> Result<(), DdlError> {
+    pub fn write(&mut self, place: &PlaceMemory) -> Result<(), MemoryError> {
         self.written = Instant::now();
         let decided = place.refused().is_none() && place.under_test().is_none();
         // Without a frame, the file would only fix the frame rate of the next session.
@@ -67,38 +88,19 @@ impl MemoryFile {
         Ok(())
     }
 
-    /// Writes the memory if a minute has passed. `None`: there is no file, or no memory.
-    ///
-    /// # Errors
-    /// As [`write`](Self::write).
-    pub fn write_if_due(file: Option<&mut Self>, place: Option<&PlaceMemory>) -> Result<(), DdlError> {
-        match file.filter(|file| file.is_due()).zip(place) {
-            Some((file, place)) => file.write(place),
-            None => Ok(()),
-        }
-    }
-
     /// Ends the test of the memory at the end of a session, and writes it. Returns the reason if the file is left
     /// unchanged.
     ///
     /// # Errors
     /// As [`write`](Self::write).
-    pub fn end(&mut self, mut place: PlaceMemory) -> Result<Option<String>, DdlError> {
+    pub fn end(&mut self, mut place: PlaceMemory) -> Result<Option<Unsaved>, MemoryError> {
         place.finish_test();
         self.write(&place)?;
-        let path = self.path.display();
-        if let Some(other) = place.refused() {
-            return Ok(Some(format!(
-                "{path}: {other}; the file is unchanged, and this watch is not saved in it; give another file for this \
-                 place"
-            )));
+        let path = || self.path.clone();
+        if let Some(refusal) = place.refused() {
+            return Ok(Some(Unsaved::OtherPlace { path: path(), refusal }));
         }
-        Ok(place.under_test().map(|tried| {
-            format!(
-                "{path}: {tried} pedestrians were observed for 8 time steps, too few to tell whether the memory is of \
-                 this place; the file is unchanged"
-            )
-        }))
+        Ok(place.under_test().map(|tried| Unsaved::TooFew { path: path(), tried }))
     }
 }
 
@@ -135,30 +137,29 @@ fn ensure_writable(path: &Path) -> std::io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::live::place_memory::tests::{memory, model, seen_after};
+    use crate::place::tests::{memory, seen_after};
 
     #[test]
     fn only_a_memory_of_this_place_is_written() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("gate.memory");
-        let model = model();
         let (mut file, none) = MemoryFile::open(&path).unwrap();
-        let nothing = seen_after(&model, SceneMemory::new(3, 9_000).unwrap(), &[]);
+        let nothing = seen_after(SceneMemory::new(3, 9_000).unwrap(), &[]);
         file.write(&nothing).unwrap();
         assert!(none.is_none() && !path.exists() && !file.is_due());
         let given = memory(55);
-        let accepted = seen_after(&model, given.clone(), &[(5, 0.0)]);
+        let accepted = seen_after(given.clone(), &[(5, 0.0)]);
         assert_eq!(file.end(accepted.clone()).unwrap(), None);
         assert_eq!(&SceneMemory::read(&path).unwrap(), accepted.memory());
         let before = std::fs::read(&path).unwrap();
         for (strangers, words) in [(30, "give another file"), (2, "2 pedestrians were observed")] {
-            let place = seen_after(&model, given.clone(), &[(strangers, 9.0)]);
+            let place = seen_after(given.clone(), &[(strangers, 9.0)]);
             file.write(&place).unwrap();
-            let told = file.end(place).unwrap().unwrap();
+            let told = file.end(place).unwrap().unwrap().to_string();
             assert!(told.contains(words) && told.contains("gate.memory"), "{told}");
             assert_eq!(std::fs::read(&path).unwrap(), before);
         }
-        let decided = seen_after(&model, given, &[(1, 9.0), (1, 0.0)]);
+        let decided = seen_after(given, &[(1, 9.0), (1, 0.0)]);
         assert_eq!(file.end(decided).unwrap(), None);
         assert_ne!(std::fs::read(&path).unwrap(), before);
     }
