@@ -1,21 +1,22 @@
 //! Parsing of a safetensors file by hand: its length, its header, its numbers.
 
 use serde_json::Value;
+use std::error::Error;
 
 /// Header and numbers of a file.
 ///
 /// # Errors
 /// Text that describes the defect.
-pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
+pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), Box<dyn Error>> {
     let (length, rest) = bytes.split_first_chunk::<8>().ok_or("shorter than the length of a header")?;
-    let length = usize::try_from(u64::from_le_bytes(*length)).map_err(|error| error.to_string())?;
+    let length = usize::try_from(u64::from_le_bytes(*length))?;
     let (header, numbers) = rest.split_at_checked(length).ok_or("ends within its header")?;
-    let header: Value = serde_json::from_slice(header).map_err(|error| error.to_string())?;
+    let header: Value = serde_json::from_slice(header)?;
     let tensors = header.as_object().ok_or("the header is not an object")?;
     let ends = tensors.values().filter_map(|tensor| tensor["data_offsets"][1].as_u64());
     let end = ends.max().unwrap_or(0);
     if end != numbers.len() as u64 {
-        return Err(format!("{} bytes of numbers, {end} expected", numbers.len()));
+        return Err(format!("{} bytes of numbers, {end} expected", numbers.len()).into());
     }
     Ok((header, numbers))
 }

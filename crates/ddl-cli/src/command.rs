@@ -208,10 +208,10 @@ fn folder(convention: Convention, data: Option<&Path>) -> anyhow::Result<PathBuf
     locate(convention, data).context("no recordings; `cargo xtask data fetch` gets them, or use --convention simulated")
 }
 
-pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
+pub(crate) fn at_least_one(text: &str) -> anyhow::Result<usize> {
     match text.parse() {
-        Ok(0) => Err("must be at least 1".to_owned()),
+        Ok(0) => bail!("must be at least 1"),
         Ok(number) => Ok(number),
-        Err(error) => Err(format!("must be a whole number of at least 1: {error}")),
+        Err(error) => bail!("must be a whole number of at least 1: {error}"),
     }
 }

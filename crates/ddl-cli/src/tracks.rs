@@ -2,7 +2,7 @@
 
 use crate::telling::{tell, tell_note};
 use crate::units::{ReadRecording, Units};
-use anyhow::bail;
+use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::LiveTracks;
 use ddl::{Note, ObservedTracks, RunConfig, WindowOptions};
@@ -83,8 +83,8 @@ impl TrackOptions {
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+fn seconds(text: &str) -> anyhow::Result<f64> {
     let longest = LiveTracks::LONGEST_GAP;
     let number = text.parse().ok().filter(|number| (0.0..=longest).contains(number));
-    number.ok_or_else(|| format!("must be a number from 0 to {longest}"))
+    number.with_context(|| format!("must be a number from 0 to {longest}"))
 }

@@ -54,12 +54,12 @@ pub(crate) struct ReadRecording {
     pub(crate) timed: TimedRecording,
 }
 
-fn columns(text: &str) -> Result<ColumnChoice, String> {
-    ColumnChoice::default().with_columns(text)
+fn columns(text: &str) -> anyhow::Result<ColumnChoice> {
+    ColumnChoice::default().with_columns(text).map_err(anyhow::Error::msg)
 }
 
-fn kept(text: &str) -> Result<String, String> {
-    ColumnChoice::default().keeping(text).map(|_| text.to_owned())
+fn kept(text: &str) -> anyhow::Result<String> {
+    ColumnChoice::default().keeping(text).map(|_| text.to_owned()).map_err(anyhow::Error::msg)
 }
 
 /// A recording, the name of its format and, of a log, the topic.
@@ -221,9 +221,9 @@ impl Units {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+fn positive(text: &str) -> anyhow::Result<f64> {
     match text.parse::<f64>() {
         Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
-        _ => Err("must be a finite number above 0".to_owned()),
+        _ => bail!("must be a finite number above 0"),
     }
 }

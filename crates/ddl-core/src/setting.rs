@@ -9,10 +9,12 @@ use std::sync::{PoisonError, RwLock};
 #[expect(missing_docs, reason = "fields by their names")]
 pub enum Setting {
     Columns,
+    Convention,
     Data,
     Device,
     Dt,
     Every,
+    Fold,
     Fps,
     FrameStep,
     From,
@@ -21,6 +23,7 @@ pub enum Setting {
     Keep,
     MaxAge,
     Model,
+    OnlyGoals,
     Patience,
     Topic,
     Unit,
@@ -45,10 +48,12 @@ impl Setting {
     pub fn name(self) -> &'static str {
         match self {
             Self::Columns => "columns",
+            Self::Convention => "convention",
             Self::Data => "data",
             Self::Device => "device",
             Self::Dt => "dt",
             Self::Every => "every",
+            Self::Fold => "fold",
             Self::Fps => "fps",
             Self::FrameStep => "frame_step",
             Self::From => "from",
@@ -57,6 +62,7 @@ impl Setting {
             Self::Keep => "keep",
             Self::MaxAge => "max_age",
             Self::Model => "model",
+            Self::OnlyGoals => "only_goals",
             Self::Patience => "patience",
             Self::Topic => "topic",
             Self::Unit => "unit",

@@ -45,6 +45,31 @@ pub enum MemoryError {
     File { path: PathBuf, problem: String },
 }
 
+/// What is wrong in the content of a memory file.
+#[derive(Debug, Error)]
+pub(crate) enum ContentFault {
+    #[error("it does not begin with {0:?}")]
+    Beginning(&'static str),
+    #[error("it has more than {0} bytes, which no memory has")]
+    TooLarge(u64),
+    #[error("it is damaged or cut off: its SHA-256 differs from the one in its first line")]
+    Damaged,
+    #[error(transparent)]
+    Json(#[from] serde_json::Error),
+    #[error(transparent)]
+    Numbers(#[from] Box<MemoryError>),
+    #[error(transparent)]
+    Frame(#[from] LiveError),
+    #[error("{0}")]
+    Tracks(&'static str),
+    #[error("a run has {found} positions, it needs 1 to {most}")]
+    Run { found: usize, most: usize },
+    #[error("position {0:?} is too far from the origin")]
+    Far(ddl_core::Position),
+    #[error("it holds {segments} segments, more than its capacity {capacity}")]
+    Segments { segments: usize, capacity: usize },
+}
+
 impl MemoryError {
     /// The error with the file that it is about.
     #[must_use]

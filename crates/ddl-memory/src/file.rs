@@ -12,7 +12,7 @@ use ddl_data::checked_frame;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use crate::error::MemoryError;
+use crate::error::{ContentFault, MemoryError};
 use crate::memory::{SceneMemory, Seen};
 use crate::track::{MAX_RUNS, RunningTrack, Track};
 
@@ -71,26 +71,25 @@ impl SceneMemory {
     /// [`MemoryError::Read`] if the file cannot be read, [`MemoryError::File`] if its content is invalid or damaged.
     pub fn read(path: &Path) -> Result<Self, MemoryError> {
         let failed = |source| MemoryError::Read { path: path.to_owned(), source };
-        let refused = |problem| MemoryError::File { path: path.to_owned(), problem };
+        let refused = |fault: ContentFault| MemoryError::File { path: path.to_owned(), problem: fault.to_string() };
         let mut file = File::open(path).map_err(failed)?;
         let mut start = [0; HEAD];
         match file.read_exact(&mut start) {
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => return Err(failed(error)),
             _ if !start.starts_with(MAGIC.as_bytes()) => {
-                return Err(refused(format!("it does not begin with {MAGIC:?}")));
+                return Err(refused(ContentFault::Beginning(MAGIC)));
             }
             _ => (),
         }
         let mut content = Vec::new();
         file.take(MOST_BYTES + 1).read_to_end(&mut content).map_err(failed)?;
         if content.len() as u64 > MOST_BYTES {
-            return Err(refused(format!("it has more than {MOST_BYTES} bytes, which no memory has")));
+            return Err(refused(ContentFault::TooLarge(MOST_BYTES)));
         }
         if head(&content).as_bytes() != start {
-            let problem = "it is damaged or cut off: its SHA-256 differs from the one in its first line";
-            return Err(refused(problem.to_owned()));
+            return Err(refused(ContentFault::Damaged));
         }
-        let stored = serde_json::from_slice(&content).map_err(|error| refused(error.to_string()))?;
+        let stored = serde_json::from_slice(&content).map_err(|error| refused(error.into()))?;
         checked(stored).map_err(refused)
     }
 }
@@ -104,36 +103,36 @@ fn head(content: &[u8]) -> String {
 }
 
 /// Checks the content, and returns the memory.
-fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
-    let error = |error: MemoryError| error.to_string();
-    let mut memory = SceneMemory::new(stored.frame_step, stored.capacity).map_err(error)?;
+fn checked(stored: Stored<'_>) -> Result<SceneMemory, ContentFault> {
+    let mut memory = SceneMemory::new(stored.frame_step, stored.capacity).map_err(Box::new)?;
     memory.last_frame = stored.last_frame;
     memory.seen = stored.seen;
     memory.ended = stored.ended.into_owned();
     memory.running = stored.running.into_owned();
     if memory.ended.iter().any(|track| track.segments() == 0) {
-        return Err("a track that has ended holds no segment".to_owned());
+        return Err(ContentFault::Tracks("a track that has ended holds no segment"));
     }
     let of_running = memory.running.values();
     let last_frames = of_running.clone().map(|running| running.last);
     for frame in last_frames.clone().chain(memory.last_frame) {
-        checked_frame(frame, None, []).map_err(|error| error.to_string())?;
+        checked_frame(frame, None, [])?;
     }
     let last_rows = of_running.clone().map(|running| running.last_row(memory.frame_step));
     let last_rows: Option<Vec<i64>> = last_rows.collect();
-    let last_rows = last_rows.ok_or("the last row of a pedestrian lies far from its last step")?;
+    let far = ContentFault::Tracks("the last row of a pedestrian lies far from its last step");
+    let last_rows = last_rows.ok_or(far)?;
     if last_rows.into_iter().max() > memory.last_frame {
-        return Err("a pedestrian was seen after the last frame".to_owned());
+        return Err(ContentFault::Tracks("a pedestrian was seen after the last frame"));
     }
     for track in memory.ended.iter().chain(of_running.map(|running| &running.track)) {
         let earlier = track.pieces.split_last().map_or(&[][..], |(_, earlier)| earlier);
         if track.pieces.len() > MAX_RUNS || earlier.iter().any(|piece| piece.len() == 0) {
-            return Err("a track has too many runs, or too short ones".to_owned());
+            return Err(ContentFault::Tracks("a track has too many runs, or too short ones"));
         }
         memory.segments += track.segments();
     }
     if memory.segments > memory.capacity {
-        return Err(format!("it holds {} segments, more than its capacity {}", memory.segments, memory.capacity));
+        return Err(ContentFault::Segments { segments: memory.segments, capacity: memory.capacity });
     }
     Ok(memory)
 }

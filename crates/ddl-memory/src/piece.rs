@@ -1,5 +1,6 @@
 //! A piece: up to 8 consecutive segments (20 positions each) of one track, all compared with a pedestrian at once.
 
+use crate::error::ContentFault;
 use ddl_core::{COORDINATE_LIMIT, OBSERVED, Position, TIME_STEP, WINDOW};
 use serde::{Deserialize, Serialize, Serializer};
 
@@ -186,15 +187,14 @@ impl Serialize for Piece {
 }
 
 impl TryFrom<Vec<Position>> for Piece {
-    type Error = String;
+    type Error = ContentFault;
 
-    fn try_from(path: Vec<Position>) -> Result<Self, String> {
+    fn try_from(path: Vec<Position>) -> Result<Self, ContentFault> {
         if !(1..=PATH).contains(&path.len()) {
-            let count = path.len();
-            return Err(format!("a run has {count} positions, it needs 1 to {PATH}"));
+            return Err(ContentFault::Run { found: path.len(), most: PATH });
         }
         match path.iter().find(|position| !is_remembered(**position)) {
-            Some(position) => Err(format!("position {position:?} is too far from the origin")),
+            Some(position) => Err(ContentFault::Far(*position)),
             None => Ok(Self::of(&path)),
         }
     }

@@ -120,16 +120,16 @@ impl Options {
     }
 }
 
-fn numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
+fn numbers<const N: usize>(text: &str) -> anyhow::Result<[f64; N]> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     let numbers = numbers.ok().filter(|numbers| numbers.iter().all(|number: &f64| number.is_finite()));
     let numbers = numbers.and_then(|numbers| numbers.try_into().ok());
-    numbers.ok_or_else(|| format!("give {N} numbers with commas between them"))
+    numbers.with_context(|| format!("give {N} numbers with commas between them"))
 }
 
-fn space(text: &str) -> Result<String, String> {
+fn space(text: &str) -> anyhow::Result<String> {
     let space = text.strip_prefix('/').map(|_| text.to_owned());
-    space.ok_or_else(|| "begin it with /".to_owned())
+    space.context("begin it with /")
 }
 
 /// `NAME:=VALUE`, as ROS writes it.
@@ -138,33 +138,33 @@ pub(crate) fn pair(rule: &str) -> anyhow::Result<(String, String)> {
     pair.with_context(|| format!("{rule}: give NAME:=VALUE"))
 }
 
-fn corners(text: &str) -> Result<[f64; 4], String> {
+fn corners(text: &str) -> anyhow::Result<[f64; 4]> {
     numbers(text)
 }
 
-fn transform(text: &str) -> Result<Isometry3<f64>, String> {
+fn transform(text: &str) -> anyhow::Result<Isometry3<f64>> {
     let [x, y, z, yaw, pitch, roll] = numbers(text)?;
     let rotation = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
     Ok(Isometry3::from_parts(Translation3::new(x, y, z), rotation))
 }
 
-fn ahead(text: &str) -> Result<f64, String> {
+fn ahead(text: &str) -> anyhow::Result<f64> {
     let [number] = numbers(text)?;
     let last = HORIZON as f64 * TIME_STEP;
-    if (0.0..=last).contains(&number) { Ok(number) } else { Err(format!("give seconds from 0 to {last:.1}")) }
+    (0.0..=last).contains(&number).then_some(number).with_context(|| format!("give seconds from 0 to {last:.1}"))
 }
 
 /// A time no longer than tracks are carried on.
-fn short(text: &str) -> Result<f64, String> {
+fn short(text: &str) -> anyhow::Result<f64> {
     let [number] = numbers(text)?;
     let longest = LiveTracks::LONGEST_GAP;
     let is_short = (0.0..=longest).contains(&number);
-    is_short.then_some(number).ok_or_else(|| format!("give seconds from 0 to {longest}"))
+    is_short.then_some(number).with_context(|| format!("give seconds from 0 to {longest}"))
 }
 
-fn positive(text: &str) -> Result<f64, String> {
+fn positive(text: &str) -> anyhow::Result<f64> {
     let [number] = numbers(text)?;
-    if number > 0.0 { Ok(number) } else { Err("give a number above 0".to_owned()) }
+    (number > 0.0).then_some(number).context("give a number above 0")
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Where frames are in the fixed frame: the transforms of `/tf` and `/tf_static`, or one that is given.
 
-use anyhow::{Error, anyhow, bail, ensure};
+use anyhow::{anyhow, bail, ensure};
 use ddl::data::LiveTracks;
 use ddl_ros::msg::{Header, Point, TfMessage};
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion};
@@ -84,7 +84,7 @@ impl Transforms {
         let others = self.upwards(to, time);
         for (ancestor, up) in self.upwards(from, time) {
             if let Some((_, other)) = others.iter().find(|(frame, _)| *frame == ancestor) {
-                let (other, up) = (other.clone().map_err(Error::msg)?, up.map_err(Error::msg)?);
+                let (other, up) = (other.clone()?, up?);
                 return Ok((other.0.inverse() * up.0, other.1 || up.1));
             }
         }
@@ -95,14 +95,14 @@ impl Transforms {
     }
 
     /// The frame and its ancestors, with the transform from the frame to each.
-    fn upwards<'a>(&'a self, frame: &'a str, time: i64) -> Vec<(&'a str, Result<Found, String>)> {
+    fn upwards<'a>(&'a self, frame: &'a str, time: i64) -> Vec<(&'a str, Result<Found, NoTransform>)> {
         let mut chain = vec![(frame, Ok((Isometry3::identity(), false)))];
         // A frame that is its own ancestor has no end.
         while chain.len() <= self.frames.len()
             && let Some((frame, up)) = chain.last()
             && let Some(link) = self.frames.get(*frame)
         {
-            let of_link = |problem| format!("the transform from {frame} to {} {problem}", link.parent);
+            let of_link = |fault| NoTransform { from: (*frame).to_owned(), to: link.parent.clone(), fault };
             let up = up.clone().and_then(|(up, was_held)| {
                 let (pose, is_held) = link.at(time, self.holds).map_err(of_link)?;
                 Ok((pose * up, was_held || is_held))
@@ -113,19 +113,36 @@ impl Transforms {
     }
 }
 
+/// Why a transform cannot be used.
+#[derive(Debug, Clone, thiserror::Error)]
+#[error("the transform from {from} to {to} {fault}")]
+struct NoTransform {
+    from: String,
+    to: String,
+    fault: LinkFault,
+}
+
+/// What is wrong with it; times are microseconds.
+#[derive(Debug, Clone, Copy, thiserror::Error)]
+enum LinkFault {
+    #[error("begins after the tracks")]
+    BeginsLater,
+    #[error("is {} s old; --transform-age allows {} s", *.age as f64 / 1e6, *.holds as f64 / 1e6)]
+    Old { age: i64, holds: i64 },
+}
+
 impl Link {
-    fn at(&self, time: i64, holds: i64) -> Result<Found, String> {
-        let seconds = |microseconds: i64| microseconds as f64 / 1e6;
+    fn at(&self, time: i64, holds: i64) -> Result<Found, LinkFault> {
         let after = self.poses.partition_point(|(stamp, _)| self.is_static || *stamp <= time);
         let Some((stamp, pose)) = after.checked_sub(1).and_then(|last| self.poses.get(last)) else {
-            return Err("begins after the tracks".to_owned());
+            return Err(LinkFault::BeginsLater);
         };
         let Some((next, next_pose)) = self.poses.get(after) else {
             let age = time - stamp;
             if self.is_static || age <= holds {
                 return Ok((*pose, !self.is_static && age > 0));
             }
-            return Err(format!("is {} s old; --transform-age allows {} s", seconds(age), seconds(holds)));
+            return Err(LinkFault::Old { age, holds });
         };
         let share = (time - stamp) as f64 / (next - stamp) as f64;
         Ok((pose.try_lerp_slerp(next_pose, share, 1e-9).unwrap_or(*pose), false))

@@ -30,14 +30,18 @@ pub(super) fn read(bytes: &[u8]) {
     }
 }
 
+/// The words of an error, to compare.
+#[derive(Debug, PartialEq)]
+struct ErrorText(String);
+
 /// Every frame and every error until the end.
-fn answers<R: std::io::BufRead>(mut reader: FrameReader<R>, length: usize) -> Vec<Result<Frame, String>> {
+fn answers<R: std::io::BufRead>(mut reader: FrameReader<R>, length: usize) -> Vec<Result<Frame, ErrorText>> {
     let mut answers = Vec::new();
     loop {
         match reader.next_frame() {
             Ok(None) => return answers,
             Ok(Some(frame)) => answers.push(Ok(frame)),
-            Err(error) => answers.push(Err(error.to_string())),
+            Err(error) => answers.push(Err(ErrorText(error.to_string()))),
         }
         assert!(answers.len() <= 2 * length + 2, "the reader makes no progress");
     }

@@ -50,10 +50,10 @@ enum GridFormat {
     Pgm,
 }
 
-fn corners(text: &str) -> Result<[f64; 4], String> {
+fn corners(text: &str) -> anyhow::Result<[f64; 4]> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
     let corners = numbers.ok().and_then(|numbers| numbers.try_into().ok());
-    corners.ok_or_else(|| "an area is four numbers, such as -5,-5,5,5: lowest x and y, largest x and y (metres)".into())
+    corners.context("an area is four numbers, such as -5,-5,5,5: lowest x and y, largest x and y (metres)")
 }
 
 /// Metres around the paths in an area of their own.

@@ -12,9 +12,9 @@ fn folder() -> (tempfile::TempDir, PathBuf) {
     (folder, path)
 }
 
-fn read(path: &Path, bytes: &[u8]) -> Result<SceneMemory, String> {
+fn read(path: &Path, bytes: &[u8]) -> Result<SceneMemory, MemoryError> {
     std::fs::write(path, bytes).unwrap();
-    SceneMemory::read(path).map_err(|error| error.to_string())
+    SceneMemory::read(path)
 }
 
 /// The content with a matching first line, as after a careful edit.
@@ -67,7 +67,7 @@ fn damaged_files_are_refused() {
     memory.write(&path).unwrap();
     let whole = std::fs::read(&path).unwrap();
     for length in 0..whole.len() {
-        let error = read(&path, &whole[..length]).unwrap_err();
+        let error = read(&path, &whole[..length]).unwrap_err().to_string();
         let says = "gate.memory is not a readable scene memory";
         assert!(error.contains(says) && error.contains("Restore a copy"), "{error}");
         if length >= HEAD {
@@ -80,7 +80,7 @@ fn damaged_files_are_refused() {
         assert!(read(&path, &bytes).is_err(), "byte {place}");
     }
     let longer = [&whole[HEAD..], b"0"].concat();
-    let error = read(&path, &signed(&longer)).unwrap_err();
+    let error = read(&path, &signed(&longer)).unwrap_err().to_string();
     assert!(error.contains("trailing characters"), "{error}");
     assert_eq!(read(&path, &whole).unwrap(), memory);
     std::fs::remove_file(&path).unwrap();
@@ -109,7 +109,7 @@ fn impossible_memories_are_refused() {
     ] {
         assert!(text.contains(from), "{from}");
         let edited = text[HEAD..].replacen(from, to, 1);
-        let error = read(&path, &signed(edited.as_bytes())).unwrap_err();
+        let error = read(&path, &signed(edited.as_bytes())).unwrap_err().to_string();
         assert!(error.contains(problem), "{error}");
     } // A row between two steps: 3 after the step at frame 20.
     let mut memory = SceneMemory::new(10, 20).unwrap();
@@ -127,7 +127,7 @@ fn impossible_memories_are_refused() {
         let row = format!("\"between\":{row}");
         let (before, after) = text[HEAD..].split_once("\"between\":").unwrap();
         let edited = [before, &row, &after[after.find("]]").unwrap() + 2..]].concat();
-        let error = read(&path, &signed(edited.as_bytes())).unwrap_err();
+        let error = read(&path, &signed(edited.as_bytes())).unwrap_err().to_string();
         assert!(error.contains(problem), "{error}");
     }
 }

@@ -8,7 +8,7 @@ use crate::forecast::shaped;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
 use crate::run::directory::RunDirectory;
-use ddl_core::{Forecast, ForecastError, Position, Window};
+use ddl_core::{Forecast, ForecastError, Position, Setting, Window};
 use ddl_eval::Scores;
 use ddl_goal::GoalEstimator;
 use ddl_network::{ForecastWindows, NetworkFrame, Noise, StepRule};
@@ -129,7 +129,10 @@ pub(crate) fn compared_epochs(run: &RunDirectory) -> Result<Vec<usize>, DdlError
         (_, 1) => Ok(Vec::new()),
         (0 | 1, _) => Err(DdlError::run(
             run.path(),
-            "keeps the weights of no epochs that `published` could choose from; train it again, with --patience 0",
+            format!(
+                "keeps the weights of no epochs that `published` could choose from; train it again, with {}",
+                Setting::Patience.to(0)
+            ),
         )),
         _ => Ok(epochs),
     }

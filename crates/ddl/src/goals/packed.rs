@@ -130,11 +130,20 @@ pub(crate) fn dtype_of(name: &str) -> Dtype {
     if name == FINGERPRINTS { Dtype::U8 } else { Dtype::F16 }
 }
 
-fn tensors_of(file: &SafeTensors<'_>) -> Result<Vec<HalfTensor>, String> {
+/// A tensor of numbers of another type.
+#[derive(Debug, thiserror::Error)]
+#[error("{name} holds {found:?}, expected {expected:?}")]
+struct OtherNumbers {
+    name: String,
+    found: Dtype,
+    expected: Dtype,
+}
+
+fn tensors_of(file: &SafeTensors<'_>) -> Result<Vec<HalfTensor>, OtherNumbers> {
     let half = |(name, view): (&str, TensorView<'_>)| {
         let expected = dtype_of(name);
         if view.dtype() != expected {
-            return Err(format!("{name} holds {:?}, expected {expected:?}", view.dtype()));
+            return Err(OtherNumbers { name: name.to_owned(), found: view.dtype(), expected });
         }
         Ok(HalfTensor { name: name.to_owned(), shape: view.shape().to_vec(), bytes: view.data().to_vec() })
     };

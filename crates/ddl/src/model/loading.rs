@@ -11,6 +11,7 @@ use crate::run::config::RunConfig;
 use crate::run::directory::{RunDirectory, write_atomically};
 use crate::run::enough_weights;
 use crate::run::model_source::ModelSource;
+use ddl_core::Setting;
 use ddl_network::weights::load_weights;
 use ddl_network::{DeviceChoice, ForecastWindows};
 use std::path::Path;
@@ -72,11 +73,13 @@ impl Ddl {
         let config = run.config()?;
         if !run.is_trained() {
             let problem = if run.has_goals(&config.goals) {
-                "is not finished: its goals are trained, its network is not (no model.safetensors); run \
-                 the same `ddl train` command again, without --only-goals, to continue"
+                format!(
+                    "is not finished: its goals are trained, its network is not (no model.safetensors); start the same \
+                     training again, without {}, to continue",
+                    Setting::OnlyGoals
+                )
             } else {
-                "is not finished: it has no model.safetensors; run the same `ddl train` command again to \
-                 continue"
+                "is not finished: it has no model.safetensors; start the same training again to continue".to_owned()
             };
             return Err(DdlError::run(run.path(), problem));
         }

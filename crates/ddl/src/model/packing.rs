@@ -3,6 +3,7 @@
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
 use crate::goals::packed::{ENTRY, FINGERPRINTS, Header, LAYOUT, NETWORK, PROPOSAL, digest, dtype_of};
+use ddl_core::Setting;
 use ddl_network::ForecastWindows;
 use ddl_network::weights::HalfTensor;
 use safetensors::tensor::TensorView;
@@ -11,10 +12,11 @@ use std::collections::HashMap;
 pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<Vec<u8>, DdlError> {
     let source = goals.source();
     let Some(proposal) = goals.proposal_network() else {
-        return Err(source.wrong(
+        return Err(source.wrong(format!(
             "cannot be packed: all of its goals come from the expert library, which is trajectory data and is not \
-             packed; train a model with --goals proposed",
-        ));
+             packed; train a model with {}",
+            Setting::Goals.to("proposed")
+        )));
     };
     let mut tensors = Vec::new();
     for (prefix, weights) in [(NETWORK, network.copy_weights()?), (PROPOSAL, proposal.copy_weights()?)] {

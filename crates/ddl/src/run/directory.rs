@@ -23,7 +23,7 @@ use crate::run::builtin_model::BuiltinModel;
 use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::lock::RunLock;
-use ddl_core::remove_temporary_files;
+use ddl_core::{Setting, remove_temporary_files};
 use ddl_network::EpochReport;
 use serde::{Serialize, de::DeserializeOwned};
 use std::io::Read as _;
@@ -200,14 +200,14 @@ impl RunDirectory {
             let inside = self.0.join("run");
             let problem = if !self.0.exists() {
                 format!(
-                    "is missing: there is neither a run of that name (`ddl train --out` makes one), nor a packed file, \
-                     nor a built-in model (the built-in models are {})",
+                    "is missing: there is neither a run of that name (a training makes one), nor a packed file, nor a \
+                     built-in model (the built-in models are {})",
                     BuiltinModel::ALL.map(BuiltinModel::name).join(", ")
                 )
             } else if inside.join("config.json").is_file() {
                 format!("has no config.json, but {} has one: give that directory", inside.display())
             } else {
-                "has no config.json, so it is not the directory of a run (`ddl train --out` makes one)".to_owned()
+                "has no config.json, so it is not the directory of a run (a training makes one)".to_owned()
             };
             return Err(DdlError::run(&self.0, problem));
         }
@@ -240,9 +240,10 @@ impl RunDirectory {
             .map(|(index, line)| {
                 serde_json::from_str(line).map_err(|error| {
                     let problem = format!(
-                        "line {} is damaged ({error}); restore the file. Without it, train a run with --patience \
-                             again; any other run can be continued",
-                        index + 1
+                        "line {} is damaged ({error}); restore the file. Without it, train a run with {} again; any \
+                             other run can be continued",
+                        index + 1,
+                        Setting::Patience
                     );
                     DdlError::run(&path, problem)
                 })

@@ -7,6 +7,7 @@ use crate::run::goal_recipe::GoalRecipe;
 use crate::run::model_source::ModelSource;
 use crate::run::starting_model::InitialModel;
 use crate::trust::fingerprints::TrackFingerprints;
+use ddl_core::Setting;
 use ddl_network::weights::{Weights, in_hex};
 use ddl_network::{DeviceChoice, StarConfig};
 use sha2::{Digest as _, Sha256};
@@ -39,7 +40,8 @@ impl StartingWeights {
         if let Some(difference) = of_network.or_else(of_goals) {
             return Err(source.wrong(format!(
             "cannot be trained further here: its {difference} as requested; leave out the options that require another \
-             network, or train from random weights (--from none)"
+             network, or train from random weights ({})",
+                Setting::From.to("none")
             )));
         }
         let (network, proposal) = model.weights()?;

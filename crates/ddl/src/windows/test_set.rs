@@ -8,7 +8,7 @@ use crate::run::builtin_model::BuiltinModel;
 use crate::run::model_source::ModelSource;
 use crate::run::training_data::{digest, fold_by_name};
 use crate::run::validation_part::ValidationPart;
-use ddl_core::{PedestrianId, Window};
+use ddl_core::{PedestrianId, Setting, Window};
 use ddl_data::{Convention, Dataset, Fold, Recording, WindowRule};
 use ddl_network::DeviceChoice;
 use rand::{RngExt as _, SeedableRng as _};
@@ -72,10 +72,10 @@ impl TestSet {
             ));
         }
         if !whole.is_empty() && whole != data.validation_recordings {
-            return wrong(
-                "has a validation part from its training and is evaluated on that; leave out --validation-recordings"
-                    .to_owned(),
-            );
+            return wrong(format!(
+                "has a validation part from its training and is evaluated on that; leave out {}",
+                Setting::ValidationRecordings
+            ));
         }
         if on == Split::Test {
             let fold = fold_by_name(dataset, &data.fold)?;
@@ -98,17 +98,17 @@ impl TestSet {
     pub(crate) fn kept_by(goals: &GoalModel, dataset: &Dataset, pedestrians: Option<usize>) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         if data.validation <= 0.0 && data.validation_recordings.is_empty() {
-            return Err(goals
-                .source()
-                .wrong("kept no validation part; train it with --validation 0.2 or --validation-recordings"));
+            let (share, whole) = (Setting::Validation.to(0.2), Setting::ValidationRecordings);
+            return Err(goals.source().wrong(format!("kept no validation part; train it with {share} or {whole}")));
         }
         let fold = fold_by_name(dataset, &data.fold)?.with_validation_recordings(&data.validation_recordings)?;
         let (rule, fraction) = (data.window_rule, data.validation);
         if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
-            return Err(goals.source().wrong(
-                "was trained on other recordings than these and may have seen their last part; give the --data that it \
-                 was trained on",
-            ));
+            return Err(goals.source().wrong(format!(
+                "was trained on other recordings than these and may have seen their last part; give the {} that it was \
+                 trained on",
+                Setting::Data
+            )));
         }
         Ok(Self::validation(&fold, data.convention, rule, fraction, pedestrians))
     }
@@ -131,11 +131,12 @@ impl TestSet {
         let (convention, rule) = (dataset.convention(), dataset.convention().headline_rule());
         let set = Self::validation(&fold, convention, rule, part.share, pedestrians);
         if set.windows.is_empty() {
-            return Err(goals.source().wrong(
+            let [whole, share] = [Setting::ValidationRecordings, Setting::Validation];
+            return Err(goals.source().wrong(format!(
                 "cannot be evaluated on the validation part of these recordings: no pedestrian in it was observed at \
-                 20 consecutive time steps; name whole recordings (--validation-recordings), or leave out --validation \
-                 to evaluate it on all of them",
-            ));
+                 20 consecutive time steps; name whole recordings ({whole}), or leave out {share} to evaluate it on \
+                 all of them"
+            )));
         }
         Ok(set)
     }
@@ -301,11 +302,11 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
     });
     let other = match others.next() {
         _ if goals.config().data.convention == Convention::Own && goals.source().run().is_some() => {
-            "on its validation part (--validation), or on a recording that it is trained without (`ddl train \
-             --convention own --fold NAME`)"
-                .to_owned()
+            let [own, fold] = [Setting::Convention.to("own"), Setting::Fold.to("NAME")];
+            let part = Setting::Validation;
+            format!("on its validation part ({part}), or on a recording that it is trained without ({own} {fold})")
         }
-        Some(model) => format!("or take a model that was trained without it (--model {model})"),
+        Some(model) => format!("or take a model that was trained without it ({})", Setting::Model.to(model)),
         None => "or train a model without it".to_owned(),
     };
     Err(goals.source().wrong(format!("was trained on {}; evaluate it on other recordings, {other}", known.join(", "))))

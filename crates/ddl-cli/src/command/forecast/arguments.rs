@@ -117,11 +117,11 @@ impl AnsweringCommand for ForecastCommand {
     }
 }
 
-fn probability(text: &str) -> Result<f64, String> {
+fn probability(text: &str) -> anyhow::Result<f64> {
     let [low, high] = ddl::region_table().range();
-    let level: f64 = text.trim().parse().map_err(|error| format!("{error}"))?;
+    let level: f64 = text.trim().parse()?;
     if (low..=high).contains(&level) {
         return Ok(level);
     }
-    Err(format!("the probability of a region must be from {low} to {high}"))
+    bail!("the probability of a region must be from {low} to {high}")
 }
