@@ -73,7 +73,7 @@ pub use run::directory::{RunDirectory, write_atomically};
 pub use run::goal_recipe::{GoalRecipe, ProposalRecipe};
 pub use run::lock::RunLock;
 pub use run::model_source::ModelSource;
-pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal_recipe};
+pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal_recipe, starting_model};
 pub use run::track_units::TrackUnits;
 pub use run::training_data::fold_by_name;
 pub use run::validation_part::ValidationPart;

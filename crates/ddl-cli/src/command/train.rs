@@ -7,23 +7,19 @@ use crate::command::recipe::Recipe;
 use crate::command::test_windows::ensure_scene_of_star;
 use crate::command::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
+use crate::paths::{ModelPath, OutputPlace};
 use crate::small_file;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use bars::TrainingBars;
 use clap::{Args, ValueEnum};
-use ddl::data::{Convention, Dataset, Fold, Window};
+use ddl::data::{Convention, Dataset, Fold};
 use ddl::network::{BackboneKind, LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{
-    BuiltinModel, DdlError, DeviceChoice, GoalModel, GoalRecipe, ModelSource, RunDirectory, TrainingRequest,
-    TrainingStage, ValidationPart, Variant,
+    DdlError, DeviceChoice, GoalModel, GoalRecipe, ModelSource, RunDirectory, TrainingRequest, TrainingStage,
+    ValidationPart, Variant,
 };
 use std::path::PathBuf;
-
-/// Number of pedestrian-windows below which training on own recordings starts from a built-in model.
-const FEW: usize = 10_000;
-/// Default patience for own recordings: training stops after this many epochs without a smaller validation error.
-const PATIENCE: usize = 10;
 
 /// Train a model on your own recordings, or on all scenes but one
 ///
@@ -67,7 +63,7 @@ pub(crate) struct Train {
     /// starting model is kept if training does not improve it on the validation part [default: none; world for own
     /// recordings with fewer than 10000 pedestrian-windows]
     #[arg(long, value_name = "MODEL")]
-    from: Option<PathBuf>,
+    from: Option<ModelPath>,
     /// Random seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -114,7 +110,7 @@ pub(crate) struct Train {
     only_goals: bool,
     /// Directory of the run
     #[arg(long)]
-    out: PathBuf,
+    out: OutputPlace,
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
@@ -133,10 +129,9 @@ impl Train {
         let interrupt = Interrupt::catch()?;
         let (convention, fold) = self.scene()?;
         let dataset = self.recordings.dataset(convention)?;
-        let is_own = convention == Convention::Own;
         let part = self.validation_part(&dataset, &fold)?;
-        let is_validated = part.share > 0.0 || !part.recordings.is_empty();
-        let patience = self.patience.unwrap_or(if is_own && is_validated { PATIENCE } else { 0 });
+        let is_validated = !part.is_empty();
+        let patience = self.patience.unwrap_or(part.patience(convention));
         if self.patience.is_some_and(|patience| patience > 0) && !is_validated {
             let validation = part.share;
             bail!(DdlError::Patience { patience, validation });
@@ -213,16 +208,9 @@ impl Train {
             let none = named.as_os_str() == "none";
             return Ok((!none).then(|| ModelSource::named(named)));
         }
-        if dataset.convention() != Convention::Own {
+        let Some((model, pedestrians)) = ddl::starting_model(dataset, fold, part)? else {
             return Ok(None);
-        }
-        let fold = ddl::fold_by_name(dataset, fold)?.with_validation_recordings(&part.recordings)?;
-        let rule = dataset.convention().headline_rule();
-        let windows = fold.training_split(rule, part.share.clamp(0.0, 1.0)).training;
-        let pedestrians: usize = windows.iter().map(Window::len).sum();
-        if pedestrians == 0 || pedestrians >= FEW {
-            return Ok(None);
-        }
+        };
         let usual = self.variant == Variant::Full
             && self.recipe == Recipe::Recommended
             && self.feed_forward_width.is_none()
@@ -237,7 +225,6 @@ impl Train {
             ));
             return Ok(None);
         }
-        let model = BuiltinModel::default();
         tell(format_args!(
             "note: only {pedestrians} pedestrian-windows for training: it starts from the weights of the built-in \
              model {model} (--from none for random weights)"

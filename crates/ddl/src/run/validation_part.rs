@@ -7,6 +7,8 @@ use ddl_data::{Convention, Fold, Recording};
 const SHARE: f64 = 0.2;
 /// The ends are too short for validation if they hold a smaller share of all pedestrian-windows than this.
 const LEAST_AT_THE_ENDS: f64 = 0.05;
+/// Epochs without a smaller validation error.
+const PATIENCE: usize = 10;
 /// One in this many recordings is kept whole.
 const WHOLE_EVERY: usize = 5;
 
@@ -20,6 +22,17 @@ pub struct ValidationPart {
 }
 
 impl ValidationPart {
+    /// Whether nothing is kept.
+    pub fn is_empty(&self) -> bool {
+        self.share <= 0.0 && self.recordings.is_empty()
+    }
+
+    /// After so many epochs without a smaller validation error training ends, if nothing else is asked for; 0: never.
+    /// Training on conventions of the literature takes all epochs.
+    pub fn patience(&self, convention: Convention) -> usize {
+        if convention == Convention::Own && !self.is_empty() { PATIENCE } else { 0 }
+    }
+
     /// The default validation part of own recordings: the last fifth of each. If these ends hold too few windows, it is
     /// a fifth of the recordings as a whole, at least one, spread evenly over those with windows.
     #[must_use]
