@@ -144,7 +144,7 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
 slow.memory => slow.memory: the memory was made at 2.5 frames per second
 damaged.memory => damaged.memory is not a readable scene memory
 tracks.csv => tracks.csv is not a readable scene memory
-folder => folder is a folder, and the lines name no scenes
+folder => folder is a folder, and the frames name no scenes
 nowhere/hall.memory => nowhere/hall.memory: cannot write this file
 ";
     for case in cases.trim().lines() {

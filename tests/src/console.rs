@@ -4,7 +4,7 @@
 
 /// A command as shown on a page.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Command {
+pub struct ConsoleCommand {
     /// Number of its line on the page, from 1.
     pub line: usize,
     /// The typed text, without the prompt; several lines if it continues after `> `.
@@ -14,8 +14,8 @@ pub struct Command {
 }
 
 /// The commands of a page's `console` blocks, in their order.
-pub fn commands(page: &str) -> Vec<Command> {
-    let mut commands: Vec<Command> = Vec::new();
+pub fn commands(page: &str) -> Vec<ConsoleCommand> {
+    let mut commands: Vec<ConsoleCommand> = Vec::new();
     let mut inside = false;
     for (line, text) in (1..).zip(page.lines()) {
         let text = text.trim_start();
@@ -27,7 +27,7 @@ pub fn commands(page: &str) -> Vec<Command> {
             continue;
         }
         if let Some(typed) = text.strip_prefix("$ ") {
-            commands.push(Command { line, typed: typed.trim_end().to_owned(), answered: Vec::new() });
+            commands.push(ConsoleCommand { line, typed: typed.trim_end().to_owned(), answered: Vec::new() });
         } else if let Some(last) = commands.last_mut() {
             match text.strip_prefix("> ") {
                 Some(more) if last.answered.is_empty() => {
@@ -41,7 +41,7 @@ pub fn commands(page: &str) -> Vec<Command> {
     commands
 }
 
-impl Command {
+impl ConsoleCommand {
     /// The words of a plain command, without comment and redirections; `None` if it uses other features of a shell.
     pub fn words(&self) -> Option<Vec<&str>> {
         let typed = self.typed.split(" #").next().unwrap_or_default();

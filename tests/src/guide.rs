@@ -7,7 +7,7 @@
 
 mod shown;
 
-use crate::console::{self, Command};
+use crate::console::{self, ConsoleCommand};
 use crate::{drawn_model, folder_contents, own_tracks, program, recordings};
 use ddl::Variant;
 use std::fmt::Write as _;
@@ -23,7 +23,7 @@ pub const ELSEWHERE: &str = include_str!("../guide/elsewhere.txt");
 const BEGIN: &str = "timeout --preserve-status --signal INT 3 bash";
 
 /// Whether a command has this page and beginning.
-pub fn begins(page: &str, command: &Command, entry: &str) -> bool {
+pub fn begins(page: &str, command: &ConsoleCommand, entry: &str) -> bool {
     let (entry_page, start) = entry.split_once(':').unwrap();
     page == entry_page && command.typed.starts_with(start.trim_start())
 }
@@ -35,7 +35,7 @@ pub fn checkout() -> PathBuf {
 }
 
 /// The commands of a page, given by its path in the workspace.
-pub fn commands(page: &str) -> Vec<Command> {
+pub fn commands(page: &str) -> Vec<ConsoleCommand> {
     console::commands(&text_of(page))
 }
 
@@ -46,7 +46,7 @@ fn text_of(page: &str) -> String {
 /// Runs the commands of a page in one shell, and compares their outputs with the page.
 pub fn check(page: &str) {
     let text = text_of(page);
-    let is_on = |list: &str, command: &Command| list.lines().any(|entry| begins(page, command, entry));
+    let is_on = |list: &str, command: &ConsoleCommand| list.lines().any(|entry| begins(page, command, entry));
     let datasets = recordings::star_folder();
     let mut commands = console::commands(&text);
     for command in &mut commands {
@@ -62,7 +62,7 @@ pub fn check(page: &str) {
         }
         !of_cargo && !is_on(ELSEWHERE, command)
     });
-    let is_begun = |command: &Command| {
+    let is_begun = |command: &ConsoleCommand| {
         let of_recordings = command.typed.contains("--fold ") && !command.typed.contains("--convention simulated");
         is_on(LONG, command) || of_recordings && datasets.is_none()
     };
@@ -129,7 +129,7 @@ fn prepare(text: &str, folder: &Path) {
 }
 
 /// The script of a page's commands, which writes the output and the exit code of each to `notes`.
-fn script(commands: &[Command], is_begun: impl Fn(&Command) -> bool, notes: &Path) -> String {
+fn script(commands: &[ConsoleCommand], is_begun: impl Fn(&ConsoleCommand) -> bool, notes: &Path) -> String {
     let (root, notes) = (checkout(), notes.display());
     let (root, empty) = (root.display(), format!("{notes}/empty"));
     let mut script = format!("mkdir {empty}\nsource {root}/tests/guide/inputs.sh {root}/datasets/sample.csv\n");
@@ -150,7 +150,7 @@ fn script(commands: &[Command], is_begun: impl Fn(&Command) -> bool, notes: &Pat
 }
 
 /// Checks that the packages, examples, benchmarks and tests named in a call of cargo exist.
-fn check_cargo(page: &str, command: &Command) {
+fn check_cargo(page: &str, command: &ConsoleCommand) {
     let place = format!("{page}:{}", command.line);
     let words = command.words().unwrap_or_else(|| panic!("{place}: not a plain call of cargo"));
     let after = |option: &str| words.iter().skip_while(|&&word| word != option).nth(1).copied();

@@ -1,6 +1,6 @@
 //! A forecast, and what is computed from it, in arrays that are filled again and again.
 
-use crate::boundary::{Failure, c_text};
+use crate::boundary::{CallFailure, c_text};
 use crate::layout::{ddl_cells, ddl_misfit, ddl_occupancy, ddl_point, ddl_risks, ddl_view};
 use crate::model::Threads;
 use ddl::data::{HORIZON, Misfit, OBSERVED, ObservationQuality, Window};
@@ -129,15 +129,17 @@ impl ShownAnswer {
     }
 
     /// Radii `[N][K][12]` of the discs around the hypotheses in the region of a level; NaN where there is none.
-    pub(crate) fn compute_radii(&mut self, level: f64) -> Result<*const f64, Failure> {
+    pub(crate) fn compute_radii(&mut self, level: f64) -> Result<*const f64, CallFailure> {
         let Some(held) = &self.held else {
             return Ok(ptr::null());
         };
         let forecast = held.answer.forecast();
-        let none = || Failure::invalid("the hypotheses of this model have no weights, and so no regions");
+        let none = || CallFailure::invalid("the hypotheses of this model have no weights, and so no regions");
         let [low, high] = forecast.regions().ok_or_else(none)?.range();
         if !(low..=high).contains(&level) {
-            return Err(Failure::invalid(format!("level is {level}; it must be a probability from {low} to {high}")));
+            return Err(CallFailure::invalid(format!(
+                "level is {level}; it must be a probability from {low} to {high}"
+            )));
         }
         let steps = pairs(forecast).flat_map(|(i, k)| (0..HORIZON).map(move |t| (i, k, t)));
         let radius = |(i, k, t)| forecast.region_radius(i, k, t, level).unwrap_or(f64::NAN);
@@ -153,16 +155,16 @@ impl ShownAnswer {
         within: f64,
         ego: Option<i64>,
         seen: bool,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CallFailure> {
         let (held, futures) = joint(self.held.as_ref())?;
         let index = |id| {
             let index = held.window.pedestrians().iter().position(|known| known.0 == id);
-            index.ok_or_else(|| Failure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
+            index.ok_or_else(|| CallFailure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
         };
         let ego = ego.map(index).transpose()?;
         let risks = held.threads.run(|| {
             let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
-            risks(futures, plans, within, ego).map_err(Failure::invalid)
+            risks(futures, plans, within, ego).map_err(CallFailure::invalid)
         })?;
         let numbers = &mut self.risk_numbers;
         numbers.clear();
@@ -177,7 +179,7 @@ impl ShownAnswer {
     }
 
     /// Grids of the probability that a cell is occupied.
-    pub(crate) fn compute_occupancy(&mut self, cells: &ddl_cells<'_>) -> Result<(), Failure> {
+    pub(crate) fn compute_occupancy(&mut self, cells: &ddl_cells<'_>) -> Result<(), CallFailure> {
         let (held, futures) = joint(self.held.as_ref())?;
         let threads = Arc::clone(&held.threads);
         let area = match cells.corners {
@@ -187,12 +189,12 @@ impl ShownAnswer {
             }
             None => futures.area(cells.margin, cells.cell),
         };
-        let area = area.map_err(Failure::invalid)?;
-        let times = Occupancy::every(cells.every).map_err(Failure::invalid)?;
+        let area = area.map_err(CallFailure::invalid)?;
+        let times = Occupancy::every(cells.every).map_err(CallFailure::invalid)?;
         let [width, height] = area.size();
-        area.ensure_kept(times.len()).map_err(Failure::invalid)?;
+        area.ensure_kept(times.len()).map_err(CallFailure::invalid)?;
         threads.run(|| {
-            let grids = futures.occupancy(&area, &times, cells.radius).map_err(Failure::invalid)?;
+            let grids = futures.occupancy(&area, &times, cells.radius).map_err(CallFailure::invalid)?;
             // After an error the last grids are still there.
             self.probabilities.clear();
             self.probabilities.extend(grids.flat_map(|grid| grid.probabilities));
@@ -213,10 +215,10 @@ impl ShownAnswer {
     }
 }
 
-fn joint(held: Option<&Held>) -> Result<(&Held, &Futures), Failure> {
+fn joint(held: Option<&Held>) -> Result<(&Held, &Futures), CallFailure> {
     let joint = held.and_then(|held| Some((held, held.answer.futures().ok()?)));
     joint.ok_or_else(|| {
-        Failure::invalid("risk and occupancy need a forecast of somebody, with joint set in its request")
+        CallFailure::invalid("risk and occupancy need a forecast of somebody, with joint set in its request")
     })
 }
 

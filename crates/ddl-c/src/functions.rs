@@ -4,7 +4,7 @@
 #![allow(clippy::missing_safety_doc, reason = "`ddl.h` begins with what holds for all pointers")]
 
 use crate::answer::{Held, LiveNotes};
-use crate::boundary::{Failure, guarded, last_error, needed, text, values};
+use crate::boundary::{CallFailure, guarded, last_error, needed, text, values};
 use crate::handles::{ddl_forecast, ddl_live, ddl_model};
 use crate::layout::{
     ddl_cells, ddl_live_options, ddl_observation, ddl_occupancy, ddl_plan, ddl_plan_point, ddl_point, ddl_request,
@@ -38,7 +38,7 @@ pub extern "C" fn ddl_last_error() -> *const c_char {
 pub extern "C" fn ddl_reserve(bytes: usize) -> ddl_status {
     guarded(|| {
         let mut block = Vec::new();
-        block.try_reserve_exact(bytes).map_err(Failure::invalid)?;
+        block.try_reserve_exact(bytes).map_err(CallFailure::invalid)?;
         // Pages are taken when they are written. The pool keeps the block that is freed here.
         block.resize(bytes, 1_u8);
         std::hint::black_box(&block);
@@ -95,11 +95,11 @@ pub unsafe extern "C" fn ddl_model_forecast(
         let tracks = past.chunks_exact(OBSERVED);
         let tracks = tracks.map(|track| track.iter().map(|position| [position.x, position.y]).collect());
         let ids = (0..count as i64).map(PedestrianId).collect();
-        let window = Window::new("past", 0, 1, ids, tracks.collect()).map_err(Failure::invalid)?;
+        let window = Window::new("past", 0, 1, ids, tracks.collect()).map_err(CallFailure::invalid)?;
         if let Some(GivenPlan { ego: Some(ego), .. }) = request.plan()
             && window.named(ego).is_none()
         {
-            return Err(Failure::invalid(format!("ego is {ego}, but no such pedestrian is given")));
+            return Err(CallFailure::invalid(format!("ego is {ego}, but no such pedestrian is given")));
         }
         let answer = model.forecast(&window, &request)?;
         forecast.0.hold(Some(Held { window, answer, threads: Arc::clone(&model.threads) }), &LiveNotes::default());
@@ -229,17 +229,17 @@ pub extern "C" fn ddl_forecast_occupancy(
 
 /// # Safety
 /// The rows of its plan are the caller's.
-unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, Failure> {
+unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, CallFailure> {
     let Some(request) = request else {
         return Ok(Request::default());
     };
     let is_planned = !request.plan.points.is_null() || request.plan.count > 0;
     if request.ego.is_some() && !is_planned {
-        return Err(Failure::invalid("ego follows a plan: give the plan, or leave out ego"));
+        return Err(CallFailure::invalid("ego follows a plan: give the plan, or leave out ego"));
     }
     if !request.joint {
         let words = "only joint futures respond to a plan: set joint, or leave out the plan";
-        return if is_planned { Err(Failure::invalid(words)) } else { Ok(Request::default()) };
+        return if is_planned { Err(CallFailure::invalid(words)) } else { Ok(Request::default()) };
     }
     // SAFETY: the caller's.
     let plan = is_planned.then(|| unsafe { planned(&request.plan) }).transpose()?;
@@ -249,7 +249,7 @@ unsafe fn asked(request: Option<&ddl_request<'_>>) -> Result<Request, Failure> {
 
 /// # Safety
 /// The rows of the plan are the caller's.
-unsafe fn planned(plan: &ddl_plan) -> Result<Plan, Failure> {
+unsafe fn planned(plan: &ddl_plan) -> Result<Plan, CallFailure> {
     // SAFETY: the caller's.
     let rows = unsafe { values(plan.points, plan.count, "points of a plan")? };
     let point = |&ddl_plan_point { time, position, radius }: &ddl_plan_point| PlanPoint {
@@ -257,5 +257,5 @@ unsafe fn planned(plan: &ddl_plan) -> Result<Plan, Failure> {
         position: [position.x, position.y],
         radius,
     };
-    Plan::new(rows.iter().map(point).collect()).map_err(Failure::invalid)
+    Plan::new(rows.iter().map(point).collect()).map_err(CallFailure::invalid)
 }

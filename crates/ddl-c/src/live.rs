@@ -1,7 +1,7 @@
 //! The tracks of one place, frame by frame.
 
 use crate::answer::{Held, LiveNotes, ShownAnswer};
-use crate::boundary::Failure;
+use crate::boundary::CallFailure;
 use crate::layout::ddl_live_options;
 use crate::model::{LoadedModel, Threads};
 use ddl::data::{Clock, LiveTracks, PedestrianId, Position, TimeUnit};
@@ -21,12 +21,12 @@ impl LivePlace {
         model: &LoadedModel,
         options: &ddl_live_options<'_>,
         memory: Option<&str>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, CallFailure> {
         let session = Session::new(Arc::clone(&model.ddl), tracks(options)?, Request::default());
-        let mut session = session.map_err(Failure::invalid)?;
+        let mut session = session.map_err(CallFailure::invalid)?;
         if let Some(path) = memory {
             let memory = SessionMemory::in_file(Path::new(path));
-            session = memory.and_then(|memory| session.remembering(memory)).map_err(Failure::file)?;
+            session = memory.and_then(|memory| session.remembering(memory)).map_err(CallFailure::file)?;
         }
         Ok(Self { session: Mutex::new(session), threads: Arc::clone(&model.threads) })
     }
@@ -39,13 +39,13 @@ impl LivePlace {
         seen: Vec<(PedestrianId, Position)>,
         request: Request,
         answer: &mut ShownAnswer,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), CallFailure> {
         let mut session = self.held();
         let session = &mut *session;
         let request = request.with_adaptive_regions();
         let now = self.threads.run(|| {
-            session.ask(request).map_err(Failure::invalid)?;
-            session.push_at(at, seen).map_err(Failure::invalid)
+            session.ask(request).map_err(CallFailure::invalid)?;
+            session.push_at(at, seen).map_err(CallFailure::invalid)
         })?;
         let place = session.place(None);
         let unwritten = now.notes.iter().find(|note| matches!(note, Note::MemoryUnwritten(_)));
@@ -70,10 +70,10 @@ impl LivePlace {
     }
 
     /// Writes the memory and closes its file. The error says why the file is unchanged.
-    pub(crate) fn close(&self) -> Result<(), Failure> {
+    pub(crate) fn close(&self) -> Result<(), CallFailure> {
         let notes = self.held().close();
         let unchanged = notes.into_iter().find(|note| !matches!(note, Note::MemoryKept { .. }));
-        unchanged.map_or(Ok(()), |note| Err(Failure::file(note.to_string())))
+        unchanged.map_or(Ok(()), |note| Err(CallFailure::file(note.to_string())))
     }
 
     /// A panic has left the tracks as they were before the frame.
@@ -82,15 +82,15 @@ impl LivePlace {
     }
 }
 
-fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, Failure> {
+fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, CallFailure> {
     let ddl_live_options { rate, whole, every, max_age, .. } = *options;
     if !(rate >= 0.0 && rate.is_finite()) {
-        return Err(Failure::invalid(format!("rate is {rate}; it must be frames per second, or 0 for times")));
+        return Err(CallFailure::invalid(format!("rate is {rate}; it must be frames per second, or 0 for times")));
     }
     let clock = match rate {
         0.0 => Clock::with_stamps(TimeUnit::Seconds),
-        rate => Clock::with_frame_time(rate.recip()).map_err(Failure::invalid)?,
+        rate => Clock::with_frame_time(rate.recip()).map_err(CallFailure::invalid)?,
     };
     let windows = WindowOptions { whole, max_age: max_age.copied(), every: Some(every), last: false };
-    windows.tracks(LiveTracks::with_clock(clock)).map_err(Failure::invalid)
+    windows.tracks(LiveTracks::with_clock(clock)).map_err(CallFailure::invalid)
 }

@@ -1,6 +1,6 @@
 //! A loaded model, and the threads that it computes on.
 
-use crate::boundary::Failure;
+use crate::boundary::CallFailure;
 use ddl::data::Window;
 use ddl::{Answer, Ddl, DeviceChoice, ModelSource, Request};
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -15,15 +15,15 @@ pub(crate) struct LoadedModel {
 
 impl LoadedModel {
     /// The built-in model of that name, or the model at that path.
-    pub(crate) fn open(name: &str, threads: usize) -> Result<Self, Failure> {
+    pub(crate) fn open(name: &str, threads: usize) -> Result<Self, CallFailure> {
         let threads = Arc::new(Threads::new(threads)?);
         let source = ModelSource::named(Path::new(name));
-        let ddl = threads.run(|| Ddl::open(&source, DeviceChoice::Cpu).map_err(Failure::file))?;
+        let ddl = threads.run(|| Ddl::open(&source, DeviceChoice::Cpu).map_err(CallFailure::file))?;
         Ok(Self { ddl: Arc::new(ddl), threads })
     }
 
-    pub(crate) fn forecast(&self, window: &Window, request: &Request) -> Result<Answer, Failure> {
-        let forecast = || self.ddl.forecast(std::slice::from_ref(window), request).map_err(Failure::invalid);
+    pub(crate) fn forecast(&self, window: &Window, request: &Request) -> Result<Answer, CallFailure> {
+        let forecast = || self.ddl.forecast(std::slice::from_ref(window), request).map_err(CallFailure::invalid);
         Ok(self.threads.run(forecast)?.remove(0))
     }
 }
@@ -38,14 +38,14 @@ pub(crate) enum Threads {
 
 impl Threads {
     /// So many; 0 for one on each core.
-    fn new(count: usize) -> Result<Self, Failure> {
+    fn new(count: usize) -> Result<Self, CallFailure> {
         if count == 1 {
             return Ok(Self::Calling);
         }
-        ddl::thread_pool(count).map(Self::Own).map_err(Failure::invalid)
+        ddl::thread_pool(count).map(Self::Own).map_err(CallFailure::invalid)
     }
 
-    pub(crate) fn run<T: Send>(&self, work: impl FnOnce() -> Result<T, Failure> + Send) -> Result<T, Failure> {
+    pub(crate) fn run<T: Send>(&self, work: impl FnOnce() -> Result<T, CallFailure> + Send) -> Result<T, CallFailure> {
         if let Self::Own(pool) = self {
             return pool.install(work);
         }
@@ -53,7 +53,7 @@ impl Threads {
         if rayon::current_thread_index().is_none() {
             let alone = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
             // It belongs to this thread for as long as that lives.
-            std::mem::forget(alone.map_err(Failure::invalid)?);
+            std::mem::forget(alone.map_err(CallFailure::invalid)?);
         }
         work()
     }

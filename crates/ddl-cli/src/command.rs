@@ -17,6 +17,7 @@ pub(crate) mod train;
 pub(crate) mod view;
 pub(crate) mod windows;
 
+use crate::paths::ModelPath;
 use crate::progress::ProgressMode;
 use crate::telling::tell;
 use crate::units::Units;
@@ -34,7 +35,7 @@ pub(crate) struct ModelChoice {
     /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model: world, or one named after
     /// the scene it was trained without (eth, hotel, univ, zara1 or zara2) [default: world]
     #[arg(long)]
-    model: Option<PathBuf>,
+    model: Option<ModelPath>,
 }
 
 impl ModelChoice {

@@ -1,31 +1,49 @@
-//! No command may write over what it reads: one guard for all options that name a file or folder.
+//! No command may write over what it reads: one guard for all options, by the types of their paths.
 
+use crate::paths::{MemoryPath, ModelPath, OutputFile, OutputPlace};
 use crate::recordings::EXTENSIONS;
 use anyhow::{bail, ensure};
 use clap::{ArgMatches, Command};
 use ddl::RunDirectory;
 use ddl::data::{Convention, locate};
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
-
-/// Options whose file or folder is written.
-const OUTPUTS: [&str; 4] = ["output", "out", "svg", "folder"];
-
-/// Those of them that name a file, in a folder that must exist.
-const OUTPUT_FILES: [&str; 2] = ["--output", "--svg"];
-
-/// Options of files, also of the memory, that are no text to write to standard output.
-const NO_TEXTS: [&str; 4] = ["out", "folder", "memory", "samples"];
-
-/// Options that name a run, of which every command writes and reads the same files.
-const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
 
 /// Names of files that commands write into the folder of `--out`, beside those of a run.
 const WRITTEN: [&str; 3] = ["plan.json", "report.html", "report.md"];
 
+/// What a command does with a path.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Use {
+    Input,
+    OutputFile,
+    OutputPlace,
+    Model,
+    Memory,
+}
+
 /// A path among the arguments, with the name of its option as users type it.
-struct Named {
+struct NamedPath {
     option: String,
     path: PathBuf,
+    purpose: Use,
+}
+
+/// The paths of an argument; none for other arguments.
+fn paths_of(matches: &ArgMatches, id: &str) -> Vec<(Use, PathBuf)> {
+    fn typed<P: Deref<Target = Path> + Clone + Send + Sync + 'static>(matches: &ArgMatches, id: &str) -> Vec<PathBuf> {
+        // An error for arguments of another type.
+        let paths = matches.try_get_many::<P>(id).ok().flatten();
+        paths.into_iter().flatten().map(|path| path.to_path_buf()).collect()
+    }
+    let kinds = [
+        (Use::Input, typed::<PathBuf>(matches, id)),
+        (Use::OutputFile, typed::<OutputFile>(matches, id)),
+        (Use::OutputPlace, typed::<OutputPlace>(matches, id)),
+        (Use::Model, typed::<ModelPath>(matches, id)),
+        (Use::Memory, typed::<MemoryPath>(matches, id)),
+    ];
+    kinds.into_iter().flat_map(|(purpose, paths)| paths.into_iter().map(move |path| (purpose, path))).collect()
 }
 
 /// Refuses arguments whose output would replace one of their inputs, also through links, or cannot be written.
@@ -40,28 +58,25 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
     let (mut outputs, mut inputs) = (Vec::new(), Vec::new());
     for argument in command.flat_map(Command::get_arguments) {
         let id = argument.get_id().as_str();
-        // An error for arguments that are no paths.
-        let Ok(Some(paths)) = matches.try_get_many::<PathBuf>(id) else {
-            continue;
-        };
         let named = argument.get_value_names().and_then(<[_]>::first);
         let option = argument.get_long().map(|long| format!("--{long}"));
         let option = option.unwrap_or_else(|| named.map_or_else(|| id.to_uppercase(), ToString::to_string));
-        for path in paths {
+        for (purpose, path) in paths_of(matches, id) {
             // `-` is standard input or output.
             let is_standard = path == Path::new("-");
-            ensure!(!is_standard || !NO_TEXTS.contains(&id), "{option} - is no path: give that of a file or folder");
+            let is_text = !matches!(purpose, Use::OutputPlace | Use::Memory);
+            ensure!(!is_standard || is_text, "{option} - is no path: give that of a file or folder");
             if !is_standard {
-                let (option, path) = (option.clone(), path.clone());
-                let side = if OUTPUTS.contains(&id) { &mut outputs } else { &mut inputs };
-                side.push(Named { option, path });
+                let is_output = matches!(purpose, Use::OutputFile | Use::OutputPlace);
+                let side = if is_output { &mut outputs } else { &mut inputs };
+                side.push(NamedPath { option: option.clone(), path, purpose });
             }
         }
     }
     inputs.extend(standing_inputs(matches));
     for output in &outputs {
         // Said before the work.
-        if OUTPUT_FILES.contains(&output.option.as_str())
+        if output.purpose == Use::OutputFile
             && let Some(folder) = output.path.parent()
             && !folder.as_os_str().is_empty()
             && !folder.is_dir()
@@ -89,15 +104,15 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
 }
 
 /// Refuses the folder of a run that is no input: its results would be replaced by others.
-fn ensure_no_other_run(output: &Named, inputs: &[Named]) -> anyhow::Result<()> {
+fn ensure_no_other_run(output: &NamedPath, inputs: &[NamedPath]) -> anyhow::Result<()> {
     let holds = |file: &&str| output.path.join(file).is_file();
     let weights = ["model.safetensors", "proposal.safetensors", "experts.safetensors"];
     let is_run = holds(&"config.json") && weights.iter().any(holds);
     let here = place(&output.path);
-    let is_of_it = |input: &Named| {
+    let is_of_it = |input: &NamedPath| {
         let there = place(&input.path);
         let folder = there.as_deref().and_then(Path::parent);
-        RUNS.contains(&input.option.as_str()) && (there == here || folder == here.as_deref())
+        input.purpose == Use::Model && (there == here || folder == here.as_deref())
     };
     ensure!(
         !is_run || inputs.iter().any(is_of_it),
@@ -109,24 +124,24 @@ fn ensure_no_other_run(output: &Named, inputs: &[Named]) -> anyhow::Result<()> {
 }
 
 /// Inputs that no argument names: the recordings that are read by default, and the file that standard input reads.
-fn standing_inputs(matches: &ArgMatches) -> impl Iterator<Item = Named> {
+fn standing_inputs(matches: &ArgMatches) -> impl Iterator<Item = NamedPath> {
     let is_default = matches.try_contains_id("data").is_ok_and(|is_given| !is_given);
     let conventions = Convention::ALL.into_iter().filter(move |_| is_default);
     let folders = conventions.filter_map(|convention| locate(convention, None).ok());
     let folders = folders.map(|folder| ("the recordings of ETH/UCY", folder));
     let standard = Some(PathBuf::from("/dev/stdin")).filter(|standard| standard.is_file());
     let inputs = folders.chain(standard.map(|path| ("standard input", path)));
-    inputs.map(|(option, path)| Named { option: option.to_owned(), path })
+    inputs.map(|(option, path)| NamedPath { option: option.to_owned(), path, purpose: Use::Input })
 }
 
 /// The input that writing to `output` would replace.
-fn lost(output: &Path, Named { option, path: input }: &Named) -> Option<PathBuf> {
+fn lost(output: &Path, NamedPath { path: input, purpose, .. }: &NamedPath) -> Option<PathBuf> {
     let (there, here) = (place(output)?, place(input)?);
     let replaced = if output.is_dir() {
         // Recordings have other names, and may lie in the folder of the results.
         here.parent() == Some(&*there) && is_written(&here)
     } else if output.is_file() {
-        let is_read = if RUNS.contains(&option.as_str()) {
+        let is_read = if *purpose == Use::Model {
             // A packed model may be kept beside the files of its run.
             is_written(&there) || there.parent() == Some(&*here.join("epochs"))
         } else {
@@ -138,7 +153,7 @@ fn lost(output: &Path, Named { option, path: input }: &Named) -> Option<PathBuf>
         there == here || (is_read && there.starts_with(&here)) || is_same_file(output, input)
     } else {
         // Nothing is there yet, but both would be written.
-        option == "--memory" && there == here
+        *purpose == Use::Memory && there == here
     };
     // Not `/dev/stdin`.
     let is_named = input.is_file() && output.is_dir();

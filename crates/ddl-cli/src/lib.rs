@@ -5,6 +5,7 @@ mod command;
 mod interrupt;
 mod kept_inputs;
 mod output;
+mod paths;
 mod progress;
 mod recordings;
 mod result_lines;
@@ -31,15 +32,15 @@ use std::ffi::OsString;
 )]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: ProgramCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum ProgramCommand {
     Forecast(command::forecast::ForecastCommand),
     Risk(command::risk::RiskCommand),
     Occupancy(command::occupancy::OccupancyCommand),
-    View(command::view::View),
+    View(command::view::ViewCommand),
     Goals(command::goals::Goals),
     Data(command::data::Data),
     Train(command::train::Train),
@@ -79,21 +80,21 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
     }
 }
 
-fn run_command(command: Command) -> anyhow::Result<()> {
+fn run_command(command: ProgramCommand) -> anyhow::Result<()> {
     match command {
-        Command::Forecast(command) => command.run(),
-        Command::Risk(command) => command.run(),
-        Command::Occupancy(command) => command.run(),
-        Command::View(command) => command.run(),
-        Command::Goals(command) => command.run(),
-        Command::Data(command) => command.run(),
-        Command::Train(command) => command.run(),
-        Command::Evaluate(command) => command.run(),
-        Command::Report(command) => command.run(),
-        Command::Benchmark(command) => command.run(),
-        Command::Windows(command) => command.run(),
-        Command::Pack(command) => command.run(),
-        Command::Info(command) => command.run(),
-        Command::Completions(command) => command.run(Cli::command()),
+        ProgramCommand::Forecast(command) => command.run(),
+        ProgramCommand::Risk(command) => command.run(),
+        ProgramCommand::Occupancy(command) => command.run(),
+        ProgramCommand::View(command) => command.run(),
+        ProgramCommand::Goals(command) => command.run(),
+        ProgramCommand::Data(command) => command.run(),
+        ProgramCommand::Train(command) => command.run(),
+        ProgramCommand::Evaluate(command) => command.run(),
+        ProgramCommand::Report(command) => command.run(),
+        ProgramCommand::Benchmark(command) => command.run(),
+        ProgramCommand::Windows(command) => command.run(),
+        ProgramCommand::Pack(command) => command.run(),
+        ProgramCommand::Info(command) => command.run(),
+        ProgramCommand::Completions(command) => command.run(Cli::command()),
     }
 }

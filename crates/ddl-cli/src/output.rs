@@ -78,3 +78,39 @@ pub(crate) fn shell_word(path: &Path) -> String {
 pub(crate) fn print_json(facts: &impl serde::Serialize) -> anyhow::Result<()> {
     print(&(serde_json::to_string_pretty(facts)? + "\n"))
 }
+
+/// Where the answers to a stream go.
+pub(crate) struct StreamOutput {
+    /// `None` for standard output.
+    file: Option<File>,
+    /// Whether a forecast was written. The first forecast replaces an existing file; an input without forecasts does
+    /// not.
+    begun: bool,
+}
+
+impl StreamOutput {
+    /// Opens the output before the first forecast, so that an error shows at once.
+    pub(crate) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
+        let mut options = File::options();
+        let options = options.write(true).create(true).truncate(false);
+        let open = |path: &Path| {
+            let file = options.open(path);
+            file.with_context(|| format!("cannot write {}", path.display()))
+        };
+        Ok(Self { file: file_of(path).map(open).transpose()?, begun: false })
+    }
+
+    pub(crate) fn write(&mut self, text: &str) -> std::io::Result<()> {
+        let Some(file) = &mut self.file else {
+            let mut out = std::io::stdout().lock();
+            out.write_all(text.as_bytes())?;
+            return out.flush();
+        };
+        // A device or a pipe has no earlier content.
+        if !self.begun && file.metadata()?.is_file() {
+            file.set_len(0)?;
+        }
+        self.begun = true;
+        file.write_all(text.as_bytes())
+    }
+}

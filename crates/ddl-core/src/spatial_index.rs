@@ -7,11 +7,11 @@ use rstar::{AABB, RTree};
 /// A spatial index of places (m). The time of a query grows with the number of results, not with the number of places.
 #[derive(Debug, Clone)]
 pub struct SpatialIndex {
-    tree: RTree<Place>,
+    tree: RTree<IndexedPlace>,
 }
 
 /// A position with its index.
-type Place = GeomWithData<Position, u32>;
+type IndexedPlace = GeomWithData<Position, u32>;
 
 impl SpatialIndex {
     /// An index of these positions (m, finite). A place is identified by its index in `positions`.
@@ -51,7 +51,7 @@ impl SpatialIndex {
     }
 
     /// All places within the box, and possibly some just outside: the corners of the box are rounded outwards.
-    fn around(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = &Place> {
+    fn around(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = &IndexedPlace> {
         let size = half_width_m + centre[0].abs().max(centre[1].abs());
         let reach = half_width_m + 4.0 * f64::EPSILON * size;
         let corner = |sign: f64| centre.map(|x| x + sign * reach);

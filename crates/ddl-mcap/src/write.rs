@@ -6,7 +6,7 @@ use crate::messages::Messages;
 use crate::tracks::TrackTopic;
 use ddl_core::{Forecast, Window};
 use ddl_ros::msg::{Header, Time};
-use ddl_ros::{Moment, definition};
+use ddl_ros::{ForecastMessages, definition};
 use mcap::records::MessageHeader;
 use mcap::write::NoSeek;
 use mcap::{WriteOptions, Writer};
@@ -82,7 +82,7 @@ impl<W: Write> ForecastLog<W> {
     ) -> Result<(), LogError> {
         let stamp = Time::of_microseconds(microseconds);
         let header = &Header { stamp, frame_id: self.frame_id.as_deref().unwrap_or(FIXED_FRAME).to_owned() };
-        let moment = Moment { window, forecast, header, joint };
+        let moment = ForecastMessages { window, forecast, header, joint };
         let time = nanoseconds(microseconds)?;
         self.put("/ddl/forecasts", &moment.forecasts(), time)?;
         self.put("/ddl/markers", &moment.markers(), time)?;

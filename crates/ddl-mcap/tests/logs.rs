@@ -3,7 +3,7 @@
 use ddl_core::{Forecast, PedestrianId, Window};
 use ddl_mcap::{ForecastLog, LoggedTracks, TrackTopic, is_log, is_mcap, read_log};
 use ddl_ros::msg::{Forecasts, Header, MarkerArray, Path, People, Time};
-use ddl_ros::{Message as _, Moment};
+use ddl_ros::{ForecastMessages, Message as _};
 use mcap::records::MessageHeader;
 use mcap::{McapResult, MessageStream, WriteOptions};
 use serde_json::{Value, from_value, json};
@@ -161,7 +161,7 @@ fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&Entry; 2]) -
     writer.finish()?;
     let (stamp, frame_id) = (Time::of_microseconds(2_000_003), frame_id.to_owned());
     let header = &Header { stamp, frame_id };
-    let moment = Moment { window, forecast, header, joint };
+    let moment = ForecastMessages { window, forecast, header, joint };
     let now = 2_000_003_000_u64;
     let made = |topic, kind, data| json!([[topic, kind, "ros2msg", "cdr"], 0, [now, now], data]);
     let mut expected = vec![

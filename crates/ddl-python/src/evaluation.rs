@@ -5,7 +5,7 @@ use crate::errors::{ensure, of_any, parsed, raised};
 use crate::forecasts::names;
 use crate::interruptible::{Stop, User, run, run_on};
 use crate::model::ForecastModel;
-use crate::moments::Moments;
+use crate::moments::UserMoments;
 use crate::recording::Recording;
 use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Window, WindowRule, locate};
 use ddl::eval::{Conditions, Protocol, ResultRow};
@@ -66,12 +66,12 @@ pub(crate) fn windows<'py>(
 }
 
 /// Without `moments` the ticks of the window are frame numbers.
-fn window_parts<'py>(py: Python<'py>, window: &Window, moments: Option<Moments>) -> PyResult<Bound<'py, PyDict>> {
+fn window_parts<'py>(py: Python<'py>, window: &Window, moments: Option<UserMoments>) -> PyResult<Bound<'py, PyDict>> {
     let n = window.len();
     let dict = PyDict::new(py);
     dict.set_item("recording", window.recording())?;
     let last = window.frames()[OBSERVED - 1];
-    dict.set_item("frame", moments.unwrap_or(Moments::FRAMES).one(py, last)?)?;
+    dict.set_item("frame", moments.unwrap_or(UserMoments::FRAMES).one(py, last)?)?;
     match moments {
         Some(moments) => dict.set_item("frame_step", moments.step(py)?)?,
         None => dict.set_item("frame_step", window.frame_step())?,

@@ -2,9 +2,9 @@
 
 use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{ensure, of_any};
-use crate::moments::Moments;
-use crate::observed::Observed;
-use crate::scene::SceneFutures;
+use crate::moments::UserMoments;
+use crate::observed::ObservedScene;
+use crate::scene::FuturesHandle;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, TIME_STEP, Window};
 use ddl::{Answer, Forecast, Pace, RegionTable, Spread};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
@@ -29,7 +29,7 @@ pub(crate) struct EmptyFields {
 /// Keys and shapes are those of the fields of `Forecast` in `_forecast.py`.
 pub(crate) fn parts<'py>(
     py: Python<'py>,
-    observed: &Observed,
+    observed: &ObservedScene,
     answer: Option<&Answer>,
     empty: EmptyFields,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -61,8 +61,8 @@ pub(crate) fn parts<'py>(
     dict.set_item("certified", certified.transpose()?)?;
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
     spread_and_regions(py, rows, forecast, empty, &dict)?;
-    let nobody = || empty.joint.then_some(SceneFutures::NOBODY);
-    dict.set_item("futures", answer.map_or_else(nobody, |answer| SceneFutures::of_rows(answer, rows)))?;
+    let nobody = || empty.joint.then_some(FuturesHandle::NOBODY);
+    dict.set_item("futures", answer.map_or_else(nobody, |answer| FuturesHandle::of_rows(answer, rows)))?;
     let has_evidence = answer.map_or(empty.certificates, |answer| !answer.certificates().is_empty());
     let evidence = has_evidence.then(|| certificates(py, answer, rows, k));
     dict.set_item("certificates", evidence.transpose()?)?;
@@ -95,7 +95,7 @@ fn spread_and_regions(
 }
 
 /// The observation, and how well it is known.
-fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) -> PyResult<()> {
+fn observed_rows(py: Python<'_>, observed: &ObservedScene, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
     let of_row = |row: &Option<usize>| window.zip(*row).map(|(window, i)| window.quality(i));
@@ -120,9 +120,9 @@ pub(crate) fn named_parts<'py>(
     py: Python<'py>,
     window: &Window,
     answer: &Answer,
-    moments: Moments,
+    moments: UserMoments,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let observed = Observed::of_window(window.clone());
+    let observed = ObservedScene::of_window(window.clone());
     let dict = parts(py, &observed, Some(answer), EmptyFields::default())?;
     dict.set_item("ids", names(py, window)?)?;
     let last = window.frames()[OBSERVED - 1];

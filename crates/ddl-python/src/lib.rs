@@ -41,12 +41,12 @@ mod _core {
         forecasts::{region_radii, write_forecasts},
         goals::GoalEstimator,
         interruptible::set_num_threads,
-        live::LivePlace,
+        live::LiveHandle,
         metrics::{collisions, displacement_errors, kde_nll, mahalanobis, scores, spread_between},
         model::ForecastModel,
         program::main,
         recording::Recording,
-        scene::SceneFutures,
+        scene::FuturesHandle,
         soft_dtw::{SearchIndex, value, value_and_gradient},
     };
 

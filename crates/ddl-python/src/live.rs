@@ -5,7 +5,7 @@ use crate::errors::{ensure, of_any, parsed, raised};
 use crate::forecasts::named_parts;
 use crate::interruptible::{User, run_on, wait_for};
 use crate::model::ForecastModel;
-use crate::moments::{Moments, clock_of_rate};
+use crate::moments::{UserMoments, clock_of_rate};
 use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, PedestrianNames, TimeUnit};
 use ddl::{Ddl, DdlError, Note, Request, Session, SessionMemory, WindowOptions};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 #[pyclass(frozen, name = "Live", module = "ddl_forecast._core")]
-pub(crate) struct LivePlace {
+pub(crate) struct LiveHandle {
     session: SharedSession,
     clock: Clock,
 }
@@ -56,7 +56,7 @@ fn held(slot: &SharedSession) -> MutexGuard<'_, Option<Box<Session<Arc<Ddl>>>>> 
 }
 
 #[pymethods]
-impl LivePlace {
+impl LiveHandle {
     #[new]
     fn new(
         model: &ForecastModel,
@@ -98,8 +98,8 @@ impl LivePlace {
         words: BTreeMap<i64, String>,
     ) -> PyResult<(Option<Bound<'py, PyDict>>, Vec<(i64, f64, String)>, Option<String>)> {
         let moments = match unit {
-            Some(unit) => Moments::of_times(parsed(unit)?),
-            None => Moments { clock: self.clock, unit: None },
+            Some(unit) => UserMoments::of_times(parsed(unit)?),
+            None => UserMoments { clock: self.clock, unit: None },
         };
         let positions = points("xy", &xy)?;
         ensure!(
@@ -165,7 +165,7 @@ impl LivePlace {
 }
 
 /// The error with frame numbers or times as the user counts them.
-fn wrong_frame(error: DdlError, moments: Moments, names: &PedestrianNames) -> PyErr {
+fn wrong_frame(error: DdlError, moments: UserMoments, names: &PedestrianNames) -> PyErr {
     let DdlError::Live(error) = error else {
         return raised(error);
     };

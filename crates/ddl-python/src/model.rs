@@ -4,7 +4,7 @@ use crate::arrays::{array, numbers};
 use crate::errors::{ensure, of_any, raised};
 use crate::forecasts::{EmptyFields, named_parts, parts};
 use crate::interruptible::{Stop, run};
-use crate::observed::{Observed, past_tracks};
+use crate::observed::{ObservedScene, past_tracks};
 use crate::recording::{Recording, doubt};
 use crate::scene::plan;
 use ddl::data::{Completeness, PedestrianId, Window};
@@ -106,8 +106,8 @@ impl ForecastModel {
         let pasts = past.iter().map(past_tracks).collect::<PyResult<Vec<_>>>()?;
         let scenes = run(py, move |_| {
             let scenes = pasts.par_iter().zip(asked);
-            let scenes = scenes.map(|(past, asked)| Observed::of_tracks(past, asked, completeness));
-            scenes.collect::<Result<Vec<Observed>, _>>()
+            let scenes = scenes.map(|(past, asked)| ObservedScene::of_tracks(past, asked, completeness));
+            scenes.collect::<Result<Vec<ObservedScene>, _>>()
         })?;
         let scenes = scenes.map_err(of_any)?;
         let windows: Vec<Window> = scenes.iter().filter_map(|scene| scene.window.clone()).collect();
@@ -120,12 +120,12 @@ impl ForecastModel {
             certificates,
             joint,
         };
-        let of_scene = |scene: &Observed| {
+        let of_scene = |scene: &ObservedScene| {
             let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
             parts(py, scene, forecast.as_ref(), empty)
         };
         let forecasts = scenes.iter().map(of_scene).collect::<PyResult<_>>()?;
-        Ok((forecasts, scenes.iter().find_map(Observed::doubt)))
+        Ok((forecasts, scenes.iter().find_map(ObservedScene::doubt)))
     }
 
     /// Forecasts each moment of the recording with pedestrians to forecast, or only the last of them. Also returns text
@@ -154,7 +154,7 @@ impl ForecastModel {
 
     /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
     fn goals(&self, py: Python<'_>, past: PyReadonlyArray3<'_, f64>, asked: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let scene = Observed::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
+        let scene = ObservedScene::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
         let k = self.hypotheses();
         let mut goals = vec![[f64::NAN; 2]; asked * k];
         let mut weights = vec![f64::NAN; asked * k];

@@ -8,13 +8,13 @@ use pyo3::prelude::*;
 
 /// From the ticks of windows to the frame numbers or times of the user.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Moments {
+pub(crate) struct UserMoments {
     pub(crate) clock: Clock,
     /// What times count; `None` for frame numbers.
     pub(crate) unit: Option<TimeUnit>,
 }
 
-impl Moments {
+impl UserMoments {
     /// Frame numbers that are ticks.
     pub(crate) const FRAMES: Self = Self { clock: Clock::STEPS, unit: None };
 

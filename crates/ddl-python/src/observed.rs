@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 
 /// The pedestrians of a scene that can be forecast, and their positions in the user's array.
 #[derive(Debug, Clone)]
-pub(crate) struct Observed {
+pub(crate) struct ObservedScene {
     /// `None` when no pedestrian can be forecast.
     pub(crate) window: Option<Window>,
     /// Index in the window of each requested pedestrian; `None` for one that cannot be forecast.
@@ -16,7 +16,7 @@ pub(crate) struct Observed {
     pub(crate) misfits: Vec<Misfit>,
 }
 
-impl Observed {
+impl ObservedScene {
     /// The observation of 8 positions each, NaN where a pedestrian was not observed. The first `asked` pedestrians are
     /// forecast; the others are their neighbours.
     pub(crate) fn of_tracks(

@@ -3,7 +3,7 @@
 use crate::arrays::array;
 use crate::errors::{ensure, of_any, parsed, raised};
 use crate::interruptible::run;
-use crate::moments::{Moments, clock_of_rate};
+use crate::moments::{UserMoments, clock_of_rate};
 use ddl::data::{
     ColumnChoice, FRAME_LIMIT, Format, Homography, LiveError, LiveTracks, Observation, PedestrianId, PedestrianName,
     Recording as Tracks, RecordingError, TimeUnit, parse_columns, write_recording,
@@ -24,7 +24,7 @@ pub(crate) struct Recording {
     pub(crate) tracks: Arc<Tracks>,
     /// With the frame numbers of the file, or its times in microseconds.
     rows: Arc<Tracks>,
-    pub(crate) moments: Moments,
+    pub(crate) moments: UserMoments,
     /// Frame numbers per second, if the user or the file states them.
     fps: Option<f64>,
 }
@@ -52,7 +52,7 @@ fn on_clock(rows: Tracks, fps: Option<f64>, frame_step: Option<i64>) -> PyResult
     Ok(Recording {
         rows: if is_same { Arc::clone(&tracks) } else { Arc::new(rows) },
         tracks,
-        moments: Moments { clock, unit },
+        moments: UserMoments { clock, unit },
         fps: fps.or(stated),
     })
 }
@@ -68,7 +68,7 @@ impl Recording {
     /// A recording whose frames are ticks.
     pub(crate) fn of_ticks(tracks: Tracks) -> Self {
         let tracks = Arc::new(tracks);
-        Self { rows: Arc::clone(&tracks), tracks, moments: Moments::FRAMES, fps: None }
+        Self { rows: Arc::clone(&tracks), tracks, moments: UserMoments::FRAMES, fps: None }
     }
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast.
@@ -119,7 +119,7 @@ impl Recording {
                 let words = words.as_ref();
                 let word = words.and_then(|words| words.get((pedestrian.0 - FRAME_LIMIT) as usize));
                 let pedestrian = word.map_or_else(|| pedestrian.to_string(), |word| format!("{word:?}"));
-                let moment = unit.map_or(Moments::FRAMES, Moments::of_times).words(frame);
+                let moment = unit.map_or(UserMoments::FRAMES, UserMoments::of_times).words(frame);
                 PyValueError::new_err(format!("pedestrian {pedestrian} is in {moment} twice"))
             }
             error => of_any(error),

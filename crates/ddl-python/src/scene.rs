@@ -14,7 +14,7 @@ use std::sync::Arc;
 /// Joint futures of the pedestrians that were asked for; `None` if none of them can be forecast.
 #[pyclass(frozen, name = "Futures", module = "ddl_forecast._core")]
 #[derive(Debug, Clone)]
-pub(crate) struct SceneFutures(Option<Arc<Futures>>);
+pub(crate) struct FuturesHandle(Option<Arc<Futures>>);
 
 /// A plan of the rows t, x, y and radius.
 pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
@@ -29,7 +29,7 @@ pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
     Plan::new(points.map(point).collect()).map_err(of_any)
 }
 
-impl SceneFutures {
+impl FuturesHandle {
     /// Those of the pedestrians in these rows; `None` for an answer of each pedestrian alone, or without spread.
     pub(crate) fn of_rows(answer: &Answer, rows: &[Option<usize>]) -> Option<Self> {
         let futures = answer.futures().ok()?;
@@ -46,7 +46,7 @@ fn plans_of(plans: &[PyReadonlyArray2<'_, f64>]) -> PyResult<Vec<Plan>> {
 }
 
 #[pymethods]
-impl SceneFutures {
+impl FuturesHandle {
     /// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step
     /// and until its end `(p, 12)`.
     fn risks<'py>(

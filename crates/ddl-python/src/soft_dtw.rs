@@ -174,10 +174,10 @@ fn computed(
 }
 
 /// A search, ready to run without the GIL.
-type Work = Box<dyn FnOnce() -> Result<Vec<Vec<Neighbour>>, SearchError> + Send>;
+type SearchWork = Box<dyn FnOnce() -> Result<Vec<Vec<Neighbour>>, SearchError> + Send>;
 
 /// The search for the `n` nearest of each query, for a number of components that is known at run time.
-type Prepare = Box<dyn Fn(&[PyReadonlyArray2<'_, f64>], usize) -> PyResult<Work> + Send + Sync>;
+type Prepare = Box<dyn Fn(&[PyReadonlyArray2<'_, f64>], usize) -> PyResult<SearchWork> + Send + Sync>;
 
 fn all_steps<const D: usize>(
     arrays: &[PyReadonlyArray2<'_, f64>],

@@ -18,7 +18,7 @@ const LIFETIME: Duration = Duration { sec: 1, nanosec: 0 };
 
 /// The forecast of one moment.
 #[derive(Debug, Clone, Copy)]
-pub struct Moment<'a> {
+pub struct ForecastMessages<'a> {
     /// The pedestrians, with their observed positions.
     pub window: &'a Window,
     /// Their forecast.
@@ -29,7 +29,7 @@ pub struct Moment<'a> {
     pub joint: bool,
 }
 
-impl Moment<'_> {
+impl ForecastMessages<'_> {
     /// Everything: all hypotheses of all pedestrians.
     pub fn forecasts(&self) -> Forecasts {
         Forecasts {

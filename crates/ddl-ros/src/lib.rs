@@ -10,5 +10,5 @@ mod tracks;
 pub use cdr::{Message, read, write};
 pub use definitions::definition;
 pub use error::RosError;
-pub use forecasts::{Moment, occupancy_grid};
+pub use forecasts::{ForecastMessages, occupancy_grid};
 pub use tracks::{Observed, SeenPedestrian, Tracks, read_tracks};

@@ -4,7 +4,7 @@ use ddl_core::{
     Forecast, Numbering, ObservationQuality, Pace, PedestrianId, PedestrianNames, RegionTable, Spread, Window,
 };
 use ddl_ros::msg::{Detection3DArray, Header, People, Time, TrackedPersons};
-use ddl_ros::{Message, Moment, Observed, RosError, occupancy_grid, read, read_tracks, write};
+use ddl_ros::{ForecastMessages, Message, Observed, RosError, occupancy_grid, read, read_tracks, write};
 use ddl_scene::{Area, Occupancy};
 use serde::de::DeserializeOwned;
 use serde_json::{Value, from_value, json, to_value};
@@ -36,7 +36,7 @@ fn forecasts_paths_and_pictures_have_all_numbers_at_their_places() {
     let (stamp, frame_id) = (Time::of_microseconds(-1_399_995), "odom".to_owned());
     let header = &Header { stamp, frame_id };
     for (joint, forecast, name) in [(true, &full, "full"), (false, &forecast(None), "bare")] {
-        let moment = Moment { window, forecast, header, joint };
+        let moment = ForecastMessages { window, forecast, header, joint };
         assert_eq!(to_value(moment.forecasts()).unwrap(), reference(name));
         assert_eq!(to_value(moment.likeliest_paths()).unwrap(), reference("paths"));
         assert_eq!(to_value(moment.markers()).unwrap(), reference("markers"));

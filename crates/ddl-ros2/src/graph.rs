@@ -1,6 +1,6 @@
 //! The node in the graph of ROS 2: its subscriptions and publishers.
 
-use crate::options::Options;
+use crate::options::NodeArguments;
 use anyhow::{Context as _, anyhow};
 use ddl_ros::Message;
 use ddl_ros::msg::{DiagnosticArray, Forecasts, MarkerArray, OccupancyGrid, Path, TfMessage};
@@ -29,7 +29,7 @@ pub(crate) struct Inputs<T> {
 }
 
 impl<T: Message + 'static> Inputs<T> {
-    pub(crate) fn open(node: &mut Node, options: &Options) -> anyhow::Result<Self> {
+    pub(crate) fn open(node: &mut Node, options: &NodeArguments) -> anyhow::Result<Self> {
         let depth = options.depth.into();
         let mut qos = QosProfile::subscription_default().history(History::KeepLast { depth });
         if options.reliable {
@@ -77,7 +77,7 @@ pub(crate) struct Outputs {
 }
 
 impl Outputs {
-    pub(crate) fn open(node: &mut Node, options: &Options) -> anyhow::Result<Self> {
+    pub(crate) fn open(node: &mut Node, options: &NodeArguments) -> anyhow::Result<Self> {
         let own = |name: &str| options.topic(&format!("~/{name}"));
         let mut grids = Vec::new();
         for time in &options.grids {
@@ -95,7 +95,7 @@ impl Outputs {
     }
 }
 
-pub(crate) fn open(options: &Options) -> anyhow::Result<Node> {
+pub(crate) fn open(options: &NodeArguments) -> anyhow::Result<Node> {
     let mut participant = DomainParticipantBuilder::new(options.domain);
     if !options.interface.is_empty() {
         participant = participant.with_only_networks(options.interface.iter().copied());

@@ -46,7 +46,7 @@ pub(crate) struct Health {
 }
 
 impl Health {
-    pub(crate) fn hear(&mut self) {
+    pub(crate) fn note_message(&mut self) {
         self.frames += 1;
         self.heard = Some(Instant::now());
     }
@@ -139,7 +139,7 @@ mod tests {
         (health.doubtful, health.restarts) = (7, 8);
         // The 1000 newest latencies count: 1000, 999 .. 1.
         (1..=1002).rev().for_each(|latency| health.answered(latency.into()));
-        (0..2).for_each(|_| health.hear());
+        (0..2).for_each(|_| health.note_message());
         health.dropped(&anyhow::anyhow!("no 1.5"));
         // Moments 3 s ago and in an hour, whatever the load of the machine.
         let ahead = Instant::now() + Duration::from_hours(1);

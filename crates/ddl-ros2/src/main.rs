@@ -14,7 +14,7 @@ use std::io::Write as _;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let ended = |options: &options::Options| match options.r#type.as_str() {
+    let ended = |options: &options::NodeArguments| match options.r#type.as_str() {
         People::TYPE => node::run::<People>(options),
         TrackedPersons::TYPE => node::run::<TrackedPersons>(options),
         _ => node::run::<Detection3DArray>(options),

@@ -2,7 +2,7 @@
 
 use crate::graph::{self, DEPTH_OF_TRANSFORMS, Inputs, Outputs, publish, take};
 use crate::health::Health;
-use crate::options::Options;
+use crate::options::NodeArguments;
 use crate::place::WatchedPlace;
 use crate::tell;
 use crate::transforms::{Transforms, moved};
@@ -11,7 +11,7 @@ use ddl::Answer;
 use ddl::data::{TIME_STEP, Window, is_vehicle};
 use ddl::scene::{Area, Occupancy};
 use ddl_ros::msg::{Forecasts, Header};
-use ddl_ros::{Moment, Observed, Tracks, occupancy_grid};
+use ddl_ros::{ForecastMessages, Observed, Tracks, occupancy_grid};
 use ros2_client::{Gid, MessageInfo, ROSTime, SystemTime};
 use std::iter::from_fn;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 /// Metres around the paths in grids without a given area.
 const MARGIN: f64 = 1.0;
 /// Runs until it is interrupted.
-pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> {
+pub(crate) fn run<T: Tracks + 'static>(options: &NodeArguments) -> anyhow::Result<()> {
     let stopped = Arc::new(AtomicBool::new(false));
     let of_handler = Arc::clone(&stopped);
     ctrlc::set_handler(move || of_handler.store(true, Ordering::Relaxed))?;
@@ -58,7 +58,7 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
             }
         }
         for message in from_fn(|| take(&inputs.tracks)).take(options.depth.into()) {
-            forecasting.health.hear();
+            forecasting.health.note_message();
             let observed = message.and_then(|(message, info)| forecasting.observe(message, &info));
             observed.unwrap_or_else(|error| forecasting.health.dropped(&error));
         }
@@ -72,7 +72,7 @@ pub(crate) fn run<T: Tracks + 'static>(options: &Options) -> anyhow::Result<()> 
 }
 
 struct Forecasting<'a> {
-    options: &'a Options,
+    options: &'a NodeArguments,
     place: WatchedPlace,
     transforms: Transforms,
     /// The area of all grids; without it, that of the last ones.
@@ -131,7 +131,7 @@ impl Forecasting<'_> {
     }
 
     fn publish(&mut self, window: &Window, answer: &Answer, header: &Header, outputs: &Outputs) -> anyhow::Result<()> {
-        let moment = Moment { window, forecast: answer.forecast(), header, joint: answer.is_joint() };
+        let moment = ForecastMessages { window, forecast: answer.forecast(), header, joint: answer.is_joint() };
         publish(&outputs.forecasts, moment.forecasts())?;
         if let Some(arrived) = self.arrived {
             let latency = SystemTime::now().to_nanos() - arrived.to_nanos();

@@ -15,7 +15,7 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "ddl-ros2", version, allow_negative_numbers = true)]
 #[command(after_help = "Options are also parameters of ROS: --ros-args -p transform_age:=0.5 --params-file FILE")]
-pub(crate) struct Options {
+pub(crate) struct NodeArguments {
     /// Topic of the tracks; without / at its start it is in the namespace
     #[arg(long, default_value = "/tracks")]
     pub(crate) topic: String,
@@ -85,7 +85,7 @@ pub(crate) struct Options {
     pub(crate) threads: Option<usize>,
 }
 
-impl Options {
+impl NodeArguments {
     /// The full name of a topic of the node, as it is remapped.
     pub(crate) fn topic(&self, name: &str) -> String {
         let name = self.full(name);
@@ -175,7 +175,7 @@ mod tests {
     fn topics_areas_and_transforms_are_read_as_ros_writes_them() {
         let line = "node --namespace=/hall/ --name=crowd --topic=seen --remap=seen:=/people,~/paths:=ways,x:=y --joint \
                     --grids=4.8 --area=-1,2,3.5,4 --cell=0.5 --transform=1,2,3,0.7,0.4,-0.2";
-        let options = Options::parse_from(line.split_whitespace());
+        let options = NodeArguments::parse_from(line.split_whitespace());
         let topics = ["seen", "~/markers", "~/paths", "/tf"].map(|name| options.topic(name));
         assert_eq!(topics.join(" "), "/people /hall/crowd/markers /hall/ways /tf");
         assert_eq!(options.strange_topics().collect::<Vec<_>>(), ["x"]);

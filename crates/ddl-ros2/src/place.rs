@@ -1,7 +1,7 @@
 //! The place that is watched: its tracks, its memory, its forecasts.
 
 use crate::health::Health;
-use crate::options::Options;
+use crate::options::NodeArguments;
 use crate::tell;
 use anyhow::{anyhow, ensure};
 use ddl::data::{Clock, Completeness, LiveTracks, Numbering, TimeUnit, Window};
@@ -23,7 +23,7 @@ pub(crate) struct WatchedPlace {
 }
 
 impl WatchedPlace {
-    pub(crate) fn open(options: &Options) -> anyhow::Result<Self> {
+    pub(crate) fn open(options: &NodeArguments) -> anyhow::Result<Self> {
         let device = DeviceChoice::Cpu;
         ddl::prepare(device, options.threads)?;
         let builtin = ModelSource::Builtin(BuiltinModel::default());
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn tracks_begin_anew_when_time_goes_back_and_names_are_kept() {
-        let (mut health, options) = (Health::default(), Options::parse_from(["node", "--rate=2"]));
+        let (mut health, options) = (Health::default(), NodeArguments::parse_from(["node", "--rate=2"]));
         let mut place = WatchedPlace::open(&options).unwrap();
         // Two forecasts a second; more than 2 s back is another beginning.
         let said = [10_000, 10_400, 10_800, 10_800, 9_000, 8_000, 8_600].map(|milliseconds| {

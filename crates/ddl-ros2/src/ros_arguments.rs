@@ -1,6 +1,6 @@
 //! The arguments of ROS, as launch files give them: `--ros-args -r __node:=crowd -p topic:=/people --params-file FILE`.
 
-use crate::options::{Options, pair};
+use crate::options::{NodeArguments, pair};
 use crate::tell;
 use anyhow::{Context as _, bail, ensure};
 use clap::builder::ValueParser;
@@ -18,7 +18,7 @@ const SECTION: &str = "ros__parameters";
 
 /// The options of a command line, in which parameters of ROS are options by their names: `transform_age` is
 /// `--transform-age`.
-pub(crate) fn parse(mut line: impl Iterator<Item = OsString>) -> anyhow::Result<Options> {
+pub(crate) fn parse(mut line: impl Iterator<Item = OsString>) -> anyhow::Result<NodeArguments> {
     let (mut words, mut files, mut parameters) = (Vec::new(), Vec::new(), Parameters::new());
     while let Some(word) = line.next() {
         if word != "--ros-args" {
@@ -51,7 +51,7 @@ pub(crate) fn parse(mut line: impl Iterator<Item = OsString>) -> anyhow::Result<
         }
     }
     // The files need the name of the node, which only the line gives.
-    let named = Options::command().ignore_errors(true).try_get_matches_from(&words);
+    let named = NodeArguments::command().ignore_errors(true).try_get_matches_from(&words);
     let of = |id| named.as_ref().ok()?.get_one::<String>(id).map(String::as_str);
     let node = format!("{}/{}", of("namespace").unwrap_or_default(), of("name").unwrap_or_default());
     let mut of_files = Parameters::new();
@@ -62,7 +62,7 @@ pub(crate) fn parse(mut line: impl Iterator<Item = OsString>) -> anyhow::Result<
     for (name, value) in of_files {
         words.extend(option(&name, &value)?);
     }
-    Ok(Options::parse_from(words))
+    Ok(NodeArguments::parse_from(words))
 }
 
 /// The option of a rule that gives a topic or the node another name.
@@ -117,7 +117,7 @@ fn option(name: &str, value: &Value) -> anyhow::Result<Option<OsString>> {
         return Ok(None);
     }
     let option = name.replace('_', "-");
-    let command = Options::command();
+    let command = NodeArguments::command();
     let known = command.get_arguments().find(|known| known.get_long() == Some(&option));
     let known = known.filter(|_| !["name", "namespace", "remap"].contains(&name));
     let known = known.with_context(|| {

@@ -9,7 +9,7 @@ mod view;
 
 use exchange::{Failure, answer, thrown};
 use js_sys::Uint8Array;
-use options::Options;
+use options::BrowserOptions;
 use tracks::FileTracks;
 use wasm_bindgen::prelude::*;
 
@@ -54,6 +54,9 @@ pub fn view(
 }
 
 /// An answer by these options.
-fn asked(options: &JsValue, answer: impl FnOnce(Options) -> Result<JsValue, Failure>) -> Result<JsValue, JsError> {
+fn asked(
+    options: &JsValue,
+    answer: impl FnOnce(BrowserOptions) -> Result<JsValue, Failure>,
+) -> Result<JsValue, JsError> {
     exchange::read(options, &[]).and_then(answer).map_err(|failure| thrown(&*failure))
 }

@@ -2,7 +2,7 @@
 
 use crate::exchange::{self, Failure, answer, thrown};
 use crate::model::model;
-use crate::options::Options;
+use crate::options::BrowserOptions;
 use crate::tracks::lines;
 use ddl::data::{Clock, LiveTracks, PedestrianId, TimeUnit};
 use ddl::memory::PlaceMemory;
@@ -16,15 +16,15 @@ const OF_FILES: [&str; 6] = ["homography", "columns", "keep", "unit", "last", "m
 /// Forecasts of one place, frame by frame.
 #[wasm_bindgen(js_name = Live)]
 #[derive(Debug)]
-pub struct LivePlace {
+pub struct BrowserPlace {
     session: Session<Arc<Ddl>>,
-    options: Options,
+    options: BrowserOptions,
     clock: Clock,
     motions: UnfamiliarMotions,
 }
 
 #[wasm_bindgen(js_class = Live)]
-impl LivePlace {
+impl BrowserPlace {
     /// A place without tracks. With `fps` (or `dt`, `frameStep`) moments are frame numbers, without it seconds.
     ///
     /// # Errors
@@ -38,7 +38,7 @@ impl LivePlace {
 
     fn open(options: &JsValue) -> Result<Self, Failure> {
         exchange::word_settings();
-        let options: Options = exchange::read(options, &OF_FILES)?;
+        let options: BrowserOptions = exchange::read(options, &OF_FILES)?;
         let clock = options.units()?.clock()?.unwrap_or_else(|| Clock::with_stamps(TimeUnit::Seconds));
         let tracks = options.windows().tracks(LiveTracks::with_clock(clock))?;
         let memory = if options.memory { SessionMemory::Kept } else { SessionMemory::None };

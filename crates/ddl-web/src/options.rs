@@ -9,7 +9,7 @@ use serde::Deserialize;
 #[derive(Debug, Default, Deserialize)]
 #[serde(default, rename_all = "camelCase", deny_unknown_fields)]
 #[expect(clippy::struct_excessive_bools, reason = "switches of the user")]
-pub(crate) struct Options {
+pub(crate) struct BrowserOptions {
     fps: Option<f64>,
     dt: Option<f64>,
     frame_step: Option<i64>,
@@ -27,7 +27,7 @@ pub(crate) struct Options {
     pub(crate) moments: Option<usize>,
 }
 
-impl Options {
+impl BrowserOptions {
     pub(crate) fn units(&self) -> Result<TrackUnits, Failure> {
         let given = [self.fps.is_some(), self.dt.is_some(), self.frame_step.is_some()];
         if given.iter().filter(|is_given| **is_given).count() > 1 {

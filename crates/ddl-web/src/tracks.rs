@@ -2,7 +2,7 @@
 
 use crate::exchange::Failure;
 use crate::model::model;
-use crate::options::Options;
+use crate::options::BrowserOptions;
 use ddl::data::{Clock, Format, Window, parse_columns};
 use ddl::memory::{Playback, SceneMemory};
 use ddl::{Answer, Moment, Note, ObservedTracks, Setting, TimedRecording, TrackUnits, UnfamiliarMotions};
@@ -18,7 +18,7 @@ pub(crate) struct FileTracks {
 }
 
 impl FileTracks {
-    pub(crate) fn read(name: &str, bytes: &[u8], options: &Options) -> Result<Self, Failure> {
+    pub(crate) fn read(name: &str, bytes: &[u8], options: &BrowserOptions) -> Result<Self, Failure> {
         if bytes.starts_with(b"\x89MCAP") {
             let words = "an MCAP file is not read here; the program reads it: ddl forecast";
             return Err(format!("{name}: {words} {name}").into());
@@ -53,7 +53,7 @@ impl FileTracks {
         &self,
         windows: &[Window],
         answers: &[Answer],
-        options: &Options,
+        options: &BrowserOptions,
     ) -> Result<(String, Vec<String>), Failure> {
         let mut motions = UnfamiliarMotions::default();
         let lines = lines(windows, answers, self.observed.clock, options, &mut motions)?;
@@ -62,7 +62,7 @@ impl FileTracks {
     }
 
     /// Some of its windows, with the tracks of earlier pedestrians if they are asked for.
-    pub(crate) fn windows(&self, windows: Vec<Window>, options: &Options) -> Result<Vec<Window>, Failure> {
+    pub(crate) fn windows(&self, windows: Vec<Window>, options: &BrowserOptions) -> Result<Vec<Window>, Failure> {
         if !options.memory {
             return Ok(windows);
         }
@@ -86,7 +86,7 @@ impl FileTracks {
 }
 
 /// The answers to windows in order of time.
-pub(crate) fn answers(windows: &[Window], options: &Options) -> Result<Vec<Answer>, Failure> {
+pub(crate) fn answers(windows: &[Window], options: &BrowserOptions) -> Result<Vec<Answer>, Failure> {
     let count: usize = windows.iter().map(Window::len).sum();
     if count > MOST {
         let problem = format!("{count} forecasts exceed the {MOST} that memory holds: take fewer (every, last)");
@@ -100,7 +100,7 @@ pub(crate) fn lines(
     windows: &[Window],
     answers: &[Answer],
     clock: Clock,
-    options: &Options,
+    options: &BrowserOptions,
     motions: &mut UnfamiliarMotions,
 ) -> Result<String, Failure> {
     let moments = windows.iter().zip(answers).map(|(window, answer)| Moment::new(window, answer, clock));

@@ -2,7 +2,7 @@
 
 use crate::exchange::{Failure, parse};
 use crate::model::model;
-use crate::options::Options;
+use crate::options::BrowserOptions;
 use crate::tracks::{self, FileTracks};
 use ddl::RecordingPlayer;
 use ddl::data::Summary;
@@ -14,7 +14,7 @@ const MOMENTS: usize = 60;
 
 /// `View` of `types.d.ts`.
 #[derive(Serialize)]
-struct View {
+struct PageView {
     data: Summary,
     page: String,
     place: String,
@@ -23,7 +23,7 @@ struct View {
 }
 
 /// The page of `ddl view` with its forecasts as JSON lines, a picture of the place, and what the program tells.
-pub(crate) fn view(name: &str, bytes: &[u8], options: &Options) -> Result<JsValue, Failure> {
+pub(crate) fn view(name: &str, bytes: &[u8], options: &BrowserOptions) -> Result<JsValue, Failure> {
     let tracks = FileTracks::read(name, bytes, options)?;
     let (observed, model) = (&tracks.observed, model()?);
     let player = RecordingPlayer {
@@ -35,7 +35,7 @@ pub(crate) fn view(name: &str, bytes: &[u8], options: &Options) -> Result<JsValu
     let windows = tracks.windows(player.shown(), options)?;
     let answers = tracks::answers(&windows, options)?;
     let (lines, notes) = tracks.lines(&windows, &answers, options)?;
-    let view = View {
+    let view = PageView {
         data: observed.recording.summary(),
         page: player.to_html(&answers, name, observed.warning.as_ref(), observed.clock)?,
         place: tracks.place()?,

@@ -1,9 +1,9 @@
 //! Comparison of the output that a page shows with the real output.
 
-use crate::console::Command;
+use crate::console::ConsoleCommand;
 
 /// A shown error implies exit code 1; an error about arguments, which ends with a hint to `--help`, implies 2.
-pub(super) fn exit_code(command: &Command) -> &'static str {
+pub(super) fn exit_code(command: &ConsoleCommand) -> &'static str {
     let says = |start: &str| command.answered.iter().any(|line| line.starts_with(start));
     match (says("error: "), says("For more information, try '--help'.")) {
         (true, true) => "2",
@@ -14,7 +14,7 @@ pub(super) fn exit_code(command: &Command) -> &'static str {
 
 /// The lines to show instead of the shown ones; `None` if these agree with the output, or none are shown. As many lines
 /// as before the first and after the last line `...` are shown again.
-pub(super) fn replacement<'a>(command: &Command, output: &'a str) -> Option<Vec<&'a str>> {
+pub(super) fn replacement<'a>(command: &ConsoleCommand, output: &'a str) -> Option<Vec<&'a str>> {
     let is_text = |line: &&str| !line.is_empty();
     let shown: Vec<&str> = command.answered.iter().map(|line| line.trim()).collect();
     let some: Vec<&str> = shown.iter().copied().filter(is_text).collect();
@@ -34,7 +34,7 @@ pub(super) fn replacement<'a>(command: &Command, output: &'a str) -> Option<Vec<
 }
 
 /// The page with other lines below a command.
-pub(super) fn replaced(page: &str, command: &Command, lines: &[&str]) -> String {
+pub(super) fn replaced(page: &str, command: &ConsoleCommand, lines: &[&str]) -> String {
     let mut page: Vec<&str> = page.lines().collect();
     // A command takes as many lines as its typed text.
     let start = command.line - 1 + command.typed.lines().count();
@@ -128,7 +128,7 @@ mod tests {
     fn output_is_replaced_and_what_was_left_out_is_left_out_again() {
         let page = "a\n```console\n$ x\n1\n...\n3\n$ for i in 1; do\n>   echo $i\n> done\n1\n```\nb\n";
         let commands = console::commands(page);
-        let with = |page: &str, command: &Command, output: &str| {
+        let with = |page: &str, command: &ConsoleCommand, output: &str| {
             replaced(page, command, &replacement(command, output).unwrap_or_default())
         };
         let last = with(page, &commands[1], "8\n9\n");

@@ -12,12 +12,13 @@ mod report;
 mod work;
 
 pub(crate) use method::Method;
-pub(crate) use plan::{Plan, Task};
+pub(crate) use plan::{BenchmarkPlan, Task};
 pub(crate) use profile::Profile;
 
 use crate::command::{Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::output::shell_word;
+use crate::paths::OutputPlace;
 use crate::telling::{human, tell};
 use anyhow::{Context as _, bail, ensure};
 use child::this_program;
@@ -75,7 +76,7 @@ pub(crate) struct Benchmark {
     /// Folder of the results; a benchmark in it is resumed [default: `runs/CONVENTION-PROFILE`, and
     /// `runs/CONVENTION-PROFILE-published` with the protocol published]
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    out: Option<OutputPlace>,
     #[command(flatten)]
     reporting: Reporting,
 }
@@ -92,7 +93,7 @@ impl Benchmark {
             return self.do_task(index, out);
         }
         let plan = self.choice.plan()?;
-        let out = self.out.clone().unwrap_or_else(|| choice::usual_folder(&plan));
+        let out = self.out.clone().map_or_else(|| choice::usual_folder(&plan), PathBuf::from);
         fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
         let _claimed = RunLock::take(&out)?;
         // The folders of tasks are left alone, because a process of an earlier benchmark may still write there.
@@ -113,7 +114,7 @@ impl Benchmark {
         }
     }
 
-    fn run_here(&self, plan: &Plan, out: &Path) -> anyhow::Result<()> {
+    fn run_here(&self, plan: &BenchmarkPlan, out: &Path) -> anyhow::Result<()> {
         let start = Instant::now();
         plan.write(out)?;
         let ends = self.work_off(plan, out)?;
@@ -130,7 +131,7 @@ impl Benchmark {
     }
 
     fn do_task(&self, index: usize, out: &Path) -> anyhow::Result<()> {
-        let plan = Plan::read(out)?;
+        let plan = BenchmarkPlan::read(out)?;
         let task = plan.tasks.get(index).with_context(|| {
             let (out, all) = (out.display(), plan.tasks.len());
             format!("no task {index}: the plan of {out} has {all} tasks, counted from 0")
@@ -138,7 +139,7 @@ impl Benchmark {
         let interrupt = catch()?;
         let workers = self.workers(1, self.cores())?;
         let display = Display::new(std::slice::from_ref(task), self.reporting.telling.progress);
-        let watch = |task: &Task, event: work::Event<'_>| display.hear(task, event);
+        let watch = |task: &Task, event: work::Event<'_>| display.note_event(task, event);
         let end = workers.run_task(&plan, task, out, &watch, &interrupt);
         watch(task, work::Event::Ended(&end));
         match end {
@@ -151,7 +152,7 @@ impl Benchmark {
     fn collect(&self, out: &Path) -> anyhow::Result<()> {
         let _claimed = RunLock::take(out)?;
         remove_temporary_files(out);
-        self.report(&Plan::read(out)?, out)
+        self.report(&BenchmarkPlan::read(out)?, out)
     }
 
     /// Makes the report of the finished tasks.
@@ -159,7 +160,7 @@ impl Benchmark {
     /// # Errors
     /// When the report cannot be written, or tasks are not finished; then the report of the finished ones is written
     /// before.
-    fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<()> {
+    fn report(&self, plan: &BenchmarkPlan, out: &Path) -> anyhow::Result<()> {
         let (finished, missing): (Vec<&Task>, Vec<&Task>) =
             plan.tasks.iter().partition(|task| Record::of(task, out).is_some());
         let runs: Vec<PathBuf> = finished.iter().map(|task| task.run_folder(out)).collect();
@@ -176,13 +177,13 @@ impl Benchmark {
         Ok(())
     }
 
-    fn work_off(&self, plan: &Plan, out: &Path) -> anyhow::Result<Vec<TaskEnd>> {
+    fn work_off(&self, plan: &BenchmarkPlan, out: &Path) -> anyhow::Result<Vec<TaskEnd>> {
         let interrupt = catch()?;
         let tasks = plan.tasks.len();
         let (jobs, threads) = side_by_side(self.jobs, plan.settings.device, self.cores(), tasks);
         tell(format_args!("plan: {tasks} tasks, {jobs} at a time with {threads} threads each, in {}", out.display()));
         let display = Display::new(&plan.tasks, self.reporting.telling.progress);
-        let watch = |task: &Task, event: work::Event<'_>| display.hear(task, event);
+        let watch = |task: &Task, event: work::Event<'_>| display.note_event(task, event);
         let workers = self.workers(jobs, threads)?;
         let ends = workers.run(plan, out, &watch, &interrupt);
         Ok(ends)

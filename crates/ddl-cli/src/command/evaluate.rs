@@ -4,6 +4,7 @@ mod forecasts;
 
 use crate::command::{Machine, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
+use crate::paths::{ModelPath, OutputPlace};
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -14,7 +15,6 @@ use ddl::{
     BuiltinModel, Ddl, DdlError, EvaluationRequest, ModelSource, Protocol, Results, RunDirectory, Split, WorkDone,
 };
 use forecasts::OtherProgram;
-use std::path::PathBuf;
 
 /// Evaluate a model or another program's forecasts beside baselines
 ///
@@ -32,7 +32,7 @@ pub(crate) struct Evaluate {
     /// without, or on your own recordings (--data FOLDER) [default: the built-in model trained without --fold; on own
     /// recordings world]
     #[arg(long, conflicts_with_all = ["forecasts", "fold", "window_rule"])]
-    model: Option<PathBuf>,
+    model: Option<ModelPath>,
     #[command(flatten)]
     other: OtherProgram,
     #[command(flatten)]
@@ -55,7 +55,7 @@ pub(crate) struct Evaluate {
     /// Write the futures of the protocol joint into a new folder, as the sample files of Joint Metrics Matter
     /// (docs/your-model.md)
     #[arg(long, value_name = "FOLDER", conflicts_with = "forecasts")]
-    samples: Option<PathBuf>,
+    samples: Option<OutputPlace>,
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
@@ -95,7 +95,7 @@ impl Evaluate {
             bail!("--samples writes the futures of the protocol joint: add --protocol joint");
         }
         // Refused before the evaluation and not after it.
-        let is_full = |folder: &&PathBuf| folder.read_dir().is_ok_and(|mut files| files.next().is_some());
+        let is_full = |folder: &&OutputPlace| folder.read_dir().is_ok_and(|mut files| files.next().is_some());
         if let Some(folder) = self.samples.as_ref().filter(is_full) {
             bail!("{} is not empty; give a new folder for --samples", folder.display());
         }

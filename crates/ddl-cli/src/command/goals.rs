@@ -2,6 +2,7 @@
 
 use crate::command::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::output::write_output;
+use crate::paths::OutputFile;
 use crate::units::Units;
 use clap::Args;
 use ddl::{GoalEvaluation, Remembering, Split};
@@ -34,7 +35,7 @@ pub(crate) struct Goals {
     telling: Telling,
     /// File to write [default: standard output]
     #[arg(long, short)]
-    output: Option<PathBuf>,
+    output: Option<OutputFile>,
     #[command(flatten)]
     machine: Machine,
 }

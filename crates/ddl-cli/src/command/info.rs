@@ -2,6 +2,7 @@
 
 use crate::command::Telling;
 use crate::output;
+use crate::paths::ModelPath;
 use clap::Args;
 use ddl::data::Fold;
 use ddl::{BuiltinModel, Ddl, DeviceChoice, GoalModel, ModelSource, RunDirectory};
@@ -15,7 +16,7 @@ use std::path::PathBuf;
 pub(crate) struct Info {
     /// Directory of a run, a packed file, or the name of a built-in model [default: the program itself]
     #[arg(value_name = "MODEL")]
-    model: Option<PathBuf>,
+    model: Option<ModelPath>,
     /// The model as in other commands
     #[arg(long = "model", value_name = "MODEL", conflicts_with = "model", hide = true)]
     named: Option<PathBuf>,
@@ -25,7 +26,7 @@ pub(crate) struct Info {
 
 impl Info {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let (summary_line, facts) = match self.model.as_ref().or(self.named.as_ref()) {
+        let (summary_line, facts) = match self.model.as_deref().or(self.named.as_deref()) {
             None => (None, of_program()),
             Some(name) => {
                 let source = ModelSource::named(name);

@@ -1,13 +1,13 @@
 //! `ddl occupancy`: where somebody will be.
 
 use crate::command::forecast::{AnsweringCommand, StreamOptions, StreamState, answer};
+use crate::paths::OutputPlace;
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::write_atomically;
 use ddl::scene::{Area, Futures, Occupancy};
 use ddl::{Moment, file_stem};
 use serde_json::Value;
-use std::path::PathBuf;
 
 /// Compute grids of the probability that somebody is there
 ///
@@ -35,7 +35,7 @@ pub(crate) struct OccupancyCommand {
     radius: f64,
     /// Folder for the files of npy and pgm, created if missing
     #[arg(long, value_name = "FOLDER")]
-    folder: Option<PathBuf>,
+    folder: Option<OutputPlace>,
     /// Format: jsonl (one message of the layout of `nav_msgs/OccupancyGrid` for each time), npy (one array of times,
     /// rows and columns for each moment) or pgm (one image for each time), both with a yaml of origin and resolution
     /// [default: jsonl; with --folder npy]
@@ -98,7 +98,7 @@ impl OccupancyCommand {
         grids: impl Iterator<Item = Occupancy>,
         times: usize,
     ) -> anyhow::Result<()> {
-        let folder = self.folder.clone().unwrap_or_default();
+        let folder = self.folder.as_deref().unwrap_or(std::path::Path::new(""));
         let put = |name: String, bytes: &[u8]| {
             let path = folder.join(name);
             write_atomically(&path, bytes).with_context(|| format!("cannot write {}", path.display()))

@@ -4,10 +4,11 @@ mod finished_benchmark;
 
 use crate::command::Telling;
 use crate::output;
+use crate::paths::{ModelPath, OutputPlace};
 use clap::Args;
 use ddl::{Ddl, DeviceChoice, ModelSource};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Pack a trained model into one small file, without its tracks
 ///
@@ -20,17 +21,17 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Pack {
     /// Directory of a finished run
     #[arg(long, required_unless_present = "benchmark")]
-    model: Option<PathBuf>,
+    model: Option<ModelPath>,
     /// Folder of a finished benchmark on star recordings instead of --model: packs one file for each fold, with its
     /// results, as for the models that come with the program
     #[arg(long, value_name = "DIR", conflicts_with = "model")]
-    benchmark: Option<PathBuf>,
+    benchmark: Option<ModelPath>,
     /// Seed of the runs to pack [default: the lowest of the benchmark]
     #[arg(long, requires = "benchmark")]
     seed: Option<u64>,
     /// File to write; for a benchmark, folder to write to
     #[arg(long, value_name = "FILE")]
-    out: PathBuf,
+    out: OutputPlace,
     #[command(flatten)]
     telling: Telling,
 }
@@ -39,7 +40,7 @@ impl Pack {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let packed = match (&self.benchmark, &self.model) {
             (Some(benchmark), _) => finished_benchmark::pack(benchmark, self.seed, &self.out)?,
-            (None, Some(model)) => vec![(self.out.clone(), pack_model(model, &self.out)?)],
+            (None, Some(model)) => vec![(self.out.to_path_buf(), pack_model(model, &self.out)?)],
             (None, None) => Vec::new(),
         };
         if self.telling.json {

@@ -2,6 +2,7 @@
 
 use crate::command::Telling;
 use crate::output;
+use crate::paths::OutputPlace;
 use clap::Args;
 use ddl::Results;
 use std::path::PathBuf;
@@ -21,7 +22,7 @@ pub(crate) struct ReportCommand {
     title: String,
     /// Folder to write to
     #[arg(long)]
-    out: PathBuf,
+    out: OutputPlace,
     #[command(flatten)]
     telling: Telling,
 }

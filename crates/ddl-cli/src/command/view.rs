@@ -2,6 +2,7 @@
 
 use crate::command::{Machine, ModelChoice};
 use crate::output;
+use crate::paths::OutputFile;
 use crate::telling::tell_note;
 use crate::tracks::TrackOptions;
 use anyhow::{Context as _, bail};
@@ -18,7 +19,7 @@ use std::path::PathBuf;
 #[command(after_help = "Examples:\n  ddl view tracks.csv\n  \
                   ddl view tracks.csv --joint\n  \
                   ddl view camera.csv --fps 25 --homography H.txt --output lobby.html --no-open")]
-pub(crate) struct View {
+pub(crate) struct ViewCommand {
     #[command(flatten)]
     model: ModelChoice,
     #[command(flatten)]
@@ -31,7 +32,7 @@ pub(crate) struct View {
     joint: bool,
     /// Page to write [default: the name of the tracks with -forecasts.html, in the current folder]
     #[arg(long, short)]
-    output: Option<PathBuf>,
+    output: Option<OutputFile>,
     /// Do not open the page; by default it is opened if standard output is a terminal
     #[arg(long)]
     no_open: bool,
@@ -39,7 +40,7 @@ pub(crate) struct View {
     machine: Machine,
 }
 
-impl View {
+impl ViewCommand {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         if self.tracks.are_live() {
             bail!("a page needs a file of tracks; for live tracks, use `ddl forecast -`");
@@ -54,10 +55,11 @@ impl View {
         let name = self.tracks.file().file_name().unwrap_or_default();
         let (warning, clock) = (observed.warning.as_ref(), observed.clock);
         let page = player.to_html(&answers, &name.to_string_lossy(), warning, clock)?;
-        let path = self.output.unwrap_or_else(|| {
+        let beside = || {
             let stem = self.tracks.file().file_stem().unwrap_or_default();
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
-        });
+        };
+        let path = self.output.map_or_else(beside, PathBuf::from);
         output::write_output(Some(&path), &page)?;
         player.unfamiliar(&answers, clock).iter().chain(&observed.misfits()).for_each(tell_note);
         if output::file_of(Some(&path)).is_none() {

@@ -3,10 +3,10 @@
 use crate::command::RecordingsAt;
 use crate::command::test_windows::{NO_WINDOW, TestWindows};
 use crate::output::write_output;
+use crate::paths::OutputFile;
 use anyhow::ensure;
 use clap::Args;
 use ddl::eval::external;
-use std::path::PathBuf;
 
 /// Write the observed test windows, for another program to forecast
 ///
@@ -22,7 +22,7 @@ pub(crate) struct WindowsCommand {
     recordings: RecordingsAt,
     /// File to write [default: standard output]
     #[arg(long, short)]
-    output: Option<PathBuf>,
+    output: Option<OutputFile>,
 }
 
 impl WindowsCommand {

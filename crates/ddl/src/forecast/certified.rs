@@ -2,7 +2,7 @@
 
 use crate::forecast::answer::Certificates;
 use crate::forecast::name::NAME;
-use crate::forecast::walk::Approach;
+use crate::forecast::walk::GoalApproach;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError, HORIZON, OBSERVED, Pace, PedestrianName, Position, Spread, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds};
@@ -148,14 +148,14 @@ impl Walked<'_> {
         &self,
         factors: &[[f64; 3]],
         positions: &mut [Position],
-        integrate: impl Fn(&Approach, &[[f64; 3]], &mut [Position]) -> Result<R, DynamicsError> + Sync,
+        integrate: impl Fn(&GoalApproach, &[[f64; 3]], &mut [Position]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
         let bounds: Vec<_> = (0..self.window.len()).map(|i| self.bounds(i)).collect();
         let pairs = factors.par_chunks_exact(HORIZON).enumerate();
         let pairs = pairs.zip(positions.par_chunks_exact_mut(HORIZON));
         let results = pairs.map(|((pair, factors), path)| {
             let (i, hypothesis) = (pair / self.hypotheses, pair % self.hypotheses);
-            let approach = Approach {
+            let approach = GoalApproach {
                 start: self.window.observed(i)[OBSERVED - 1],
                 goal: self.goals[pair],
                 sigma: self.config.sigma,

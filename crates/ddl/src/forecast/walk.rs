@@ -11,7 +11,7 @@ use nalgebra::Vector2;
 use std::cell::RefCell;
 
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Approach {
+pub(crate) struct GoalApproach {
     /// Last observed position, metres.
     pub(crate) start: Position,
     pub(crate) goal: Position,
@@ -22,15 +22,15 @@ pub(crate) struct Approach {
 }
 
 #[derive(Debug)]
-pub(crate) struct Walk {
+pub(crate) struct CertifiedWalk {
     /// One for each step, without the start; metres.
     pub(crate) positions: [Position; HORIZON],
     pub(crate) certificate: LyapunovCertificate<f64>,
 }
 
-impl Approach {
+impl GoalApproach {
     /// Integrates the approach with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
-    pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
+    pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<CertifiedWalk, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
         let schedule = arriving_schedule(self.metrics(factors)?, attractor, self.bounds, self.time_step)?;
         // The rollout asks once for each step, at the positions that the certificate needs too.
@@ -45,7 +45,7 @@ impl Approach {
         let start = Vector2::from(self.start);
         rollout_into(&flow, &StableEuler, start, self.time_step, &mut path)?;
         let certificate = LyapunovCertificate::new(&path, &metrics.take(), &attractor, self.time_step)?;
-        Ok(Walk {
+        Ok(CertifiedWalk {
             certificate: certificate.within(&path, &attractor, &self.bounds)?,
             positions: std::array::from_fn(|t| path[t + 1].into()),
         })
@@ -81,8 +81,8 @@ mod tests {
 
     use super::*;
 
-    fn approach() -> Approach {
-        Approach {
+    fn approach() -> GoalApproach {
+        GoalApproach {
             start: [1.0, -2.0],
             goal: [2.8, -4.4],
             sigma: 1e-8,

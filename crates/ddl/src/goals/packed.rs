@@ -32,7 +32,7 @@ const MOST_BYTES: u64 = 1 << 28;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Header {
+pub(crate) struct PackedHeader {
     pub(crate) layout: u32,
     /// The run's `config.json` as a string, so that its digest does not depend on JSON formatting.
     pub(crate) config: String,
@@ -71,7 +71,7 @@ fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
 }
 
 /// A packed model whose networks are not made yet.
-pub(crate) struct Contents {
+pub(crate) struct PackedContents {
     pub(crate) config: RunConfig,
     pub(crate) motions: Option<TrainingMotions>,
     pub(crate) fingerprints: TrackFingerprints,
@@ -79,7 +79,7 @@ pub(crate) struct Contents {
 }
 
 /// What a packed model holds, after its digest is checked.
-pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
+pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<PackedContents, DdlError> {
     let damaged = |error: &dyn std::fmt::Display| {
         source.wrong(format!(
             "is not a complete packed model ({error}); copy it again, or pack its run again with `ddl pack`"
@@ -94,7 +94,8 @@ pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, D
              run, or pack the run with `ddl pack`",
         ));
     };
-    let Header { layout, config, motions, sha256 } = serde_json::from_str(entry).map_err(|error| damaged(&error))?;
+    let PackedHeader { layout, config, motions, sha256 } =
+        serde_json::from_str(entry).map_err(|error| damaged(&error))?;
     if layout != LAYOUT {
         return Err(source.wrong(format!("has layout {layout}, this program reads {LAYOUT}; pack its run again")));
     }
@@ -122,7 +123,7 @@ pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, D
     let Some(fingerprints) = fingerprints else {
         return Err(source.wrong("has no fingerprints of its training tracks; pack its run again"));
     };
-    Ok(Contents { config, motions, fingerprints, tensors })
+    Ok(PackedContents { config, motions, fingerprints, tensors })
 }
 
 /// The type of the numbers of a tensor of this name.
@@ -155,7 +156,7 @@ pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, Dd
 }
 
 pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Result<Unpacked, DdlError> {
-    let Contents { config, motions, fingerprints, tensors } = contents(bytes, source)?;
+    let PackedContents { config, motions, fingerprints, tensors } = contents(bytes, source)?;
     source.check(&config)?;
     let Some(recipe) = &config.goals.proposal else {
         return Err(source.wrong("has no proposal network for its goals; pack another run"));

@@ -2,7 +2,7 @@
 
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
-use crate::goals::packed::{ENTRY, FINGERPRINTS, Header, LAYOUT, NETWORK, PROPOSAL, digest, dtype_of};
+use crate::goals::packed::{ENTRY, FINGERPRINTS, LAYOUT, NETWORK, PROPOSAL, PackedHeader, digest, dtype_of};
 use ddl_core::Setting;
 use ddl_network::ForecastWindows;
 use ddl_network::weights::HalfTensor;
@@ -31,7 +31,7 @@ pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<V
     let config = serde_json::to_string(goals.config()).map_err(|error| failed(&error))?;
     let motions = goals.motions().map(serde_json::to_string).transpose();
     let motions = motions.map_err(|error| failed(&error))?;
-    let header = Header {
+    let header = PackedHeader {
         layout: LAYOUT,
         sha256: digest([&config, motions.as_deref().unwrap_or_default()], &tensors),
         config,

@@ -40,7 +40,7 @@ struct SceneLine<'a> {
 #[derive(Serialize)]
 struct Future<'a> {
     weight: f64,
-    paths: Vec<Path<'a>>,
+    paths: Vec<PathLine<'a>>,
 }
 
 #[derive(Serialize)]
@@ -101,11 +101,11 @@ impl Region {
 struct Hypothesis<'a> {
     weight: f64,
     #[serde(flatten)]
-    path: Path<'a>,
+    path: PathLine<'a>,
 }
 
 #[derive(Serialize)]
-struct Path<'a> {
+struct PathLine<'a> {
     goal: Option<[f64; 2]>,
     positions: &'a [[f64; 2]],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -137,7 +137,7 @@ impl<'a> Certificate<'a> {
     }
 }
 
-impl<'a> Path<'a> {
+impl<'a> PathLine<'a> {
     fn of(moment: &Moment<'a>, i: usize, k: usize) -> Self {
         Self {
             goal: moment.answer.forecast().goal(i, k),
@@ -168,7 +168,7 @@ pub fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, ser
         for i in 0..moment.window.len() {
             let forecast = moment.answer.forecast();
             let hypotheses = (0..forecast.hypotheses())
-                .map(|k| Hypothesis { weight: forecast.weight(i, k), path: Path::of(moment, i, k) });
+                .map(|k| Hypothesis { weight: forecast.weight(i, k), path: PathLine::of(moment, i, k) });
             let line = PedestrianLine {
                 moment: MomentHead::of(moment),
                 pedestrian: ObservedPedestrian::of(moment, i, regions),
@@ -185,7 +185,7 @@ fn scene_line<'a>(moment: &Moment<'a>, regions: &[f64]) -> SceneLine<'a> {
     let (pedestrians, forecast) = (0..moment.window.len(), moment.answer.forecast());
     let futures = (0..forecast.hypotheses()).map(|k| Future {
         weight: forecast.weight(0, k),
-        paths: pedestrians.clone().map(|i| Path::of(moment, i, k)).collect(),
+        paths: pedestrians.clone().map(|i| PathLine::of(moment, i, k)).collect(),
     });
     let groups = ddl_scene::groups(moment.window).into_iter();
     SceneLine {

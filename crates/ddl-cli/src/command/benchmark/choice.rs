@@ -1,7 +1,7 @@
 //! The options that choose folds, methods and protocols, and the plan made of them.
 
 use crate::command::benchmark::method::Method;
-use crate::command::benchmark::plan::{Plan, Settings, Training};
+use crate::command::benchmark::plan::{BenchmarkPlan, Settings, Training};
 use crate::command::benchmark::profile::Profile;
 use crate::command::recipe::Recipe;
 use crate::command::{at_least_one, ensure_no_files, folder};
@@ -58,7 +58,7 @@ pub(super) struct PlanOptions {
 
 impl PlanOptions {
     /// The plan; prints the data convention where no option names it.
-    pub(super) fn plan(&self) -> anyhow::Result<Plan> {
+    pub(super) fn plan(&self) -> anyhow::Result<BenchmarkPlan> {
         let (convention, data) = self.recordings()?;
         self.plan_of(convention, data)
     }
@@ -95,7 +95,7 @@ impl PlanOptions {
         Ok((convention, folder_of_recordings))
     }
 
-    fn plan_of(&self, convention: Convention, data: Option<PathBuf>) -> anyhow::Result<Plan> {
+    fn plan_of(&self, convention: Convention, data: Option<PathBuf>) -> anyhow::Result<BenchmarkPlan> {
         let mut protocols = self.protocols.clone();
         // Their order does not change the results.
         protocols.sort_unstable();
@@ -139,12 +139,12 @@ impl PlanOptions {
             protocols,
             recipe: Training { name, optimiser: work.optimiser },
         };
-        Plan::new(settings, &folds, &methods, &self.seeds)
+        BenchmarkPlan::new(settings, &folds, &methods, &self.seeds)
     }
 }
 
 /// The default folder of the results of a plan.
-pub(super) fn usual_folder(plan: &Plan) -> PathBuf {
+pub(super) fn usual_folder(plan: &BenchmarkPlan) -> PathBuf {
     let settings = &plan.settings;
     let suffix = match settings.recipe.name {
         Recipe::Recommended => "",

@@ -14,7 +14,7 @@ fn parsed(words: &str) -> PlanOptions {
     Line::try_parse_from(words).unwrap().choice
 }
 
-pub(in super::super) fn plan_of(words: &str) -> anyhow::Result<Plan> {
+pub(in super::super) fn plan_of(words: &str) -> anyhow::Result<BenchmarkPlan> {
     parsed(words).plan_of(Convention::Star, Some("/recordings".into()))
 }
 

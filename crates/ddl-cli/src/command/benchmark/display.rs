@@ -36,7 +36,7 @@ impl Display {
         Self { mode, state: Mutex::new(state) }
     }
 
-    pub(super) fn hear(&self, task: &Task, event: Event<'_>) {
+    pub(super) fn note_event(&self, task: &Task, event: Event<'_>) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         match event {
             Event::Started => self.say(&state, &format!("{}: started", task.id)),

@@ -2,12 +2,12 @@
 
 /// The parts of the time at which the goals are made, and at which the training has ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pace {
+pub(super) struct TaskPace {
     goals: f64,
     training: f64,
 }
 
-impl Pace {
+impl TaskPace {
     pub(super) fn of_seconds(goals: f64, training: f64, scores: f64) -> Self {
         let whole = goals + training + scores;
         Self { goals: goals / whole, training: (goals + training) / whole }
@@ -31,7 +31,7 @@ impl Pace {
 
 #[test]
 fn the_part_grows_from_0_to_1() {
-    let pace = Pace::of_seconds(243.0, 58.0, 65.0);
+    let pace = TaskPace::of_seconds(243.0, 58.0, 65.0);
     for pace in [pace, pace.without_goals()] {
         let stages = ["goals", "train", "evaluate"].into_iter();
         let parts = stages.flat_map(|stage| [0.0, 0.5, 1.0].map(|part| pace.at(stage, part)));

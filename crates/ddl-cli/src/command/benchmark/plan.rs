@@ -1,7 +1,7 @@
 //! The plan: which models are trained and scored, as data.
 
 use crate::command::benchmark::method::Method;
-use crate::command::benchmark::pace::Pace;
+use crate::command::benchmark::pace::TaskPace;
 use crate::command::benchmark::profile::{Optimiser, Profile};
 use crate::command::recipe::Recipe;
 use anyhow::{Context as _, bail, ensure};
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 const FORMAT: u32 = 3;
 
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Plan {
+pub(crate) struct BenchmarkPlan {
     format: u32,
     pub(crate) settings: Settings,
     /// Those of the first method first: the others use their goals.
@@ -93,7 +93,7 @@ impl ProgramArguments {
     }
 }
 
-impl Plan {
+impl BenchmarkPlan {
     pub(crate) fn new(
         settings: Settings,
         folds: &[impl ToString],
@@ -123,7 +123,7 @@ impl Plan {
     }
 
     /// How the time of a task divides into its stages.
-    pub(super) fn pace(&self, task: &Task) -> Pace {
+    pub(super) fn pace(&self, task: &Task) -> TaskPace {
         let pace = self.settings.profile.pace(self.settings.recipe.name);
         if self.with_same_goals(task).is_some() {
             return pace.without_goals();

@@ -3,11 +3,11 @@
 use super::super::choice::tests::plan_of;
 use super::*;
 
-fn published(words: &str) -> Plan {
+fn published(words: &str) -> BenchmarkPlan {
     plan_of(&format!("--profile paper --protocol published,fair,single --epochs 4 {words}")).unwrap()
 }
 
-fn of_eth() -> Plan {
+fn of_eth() -> BenchmarkPlan {
     published("--folds eth --seeds 7")
 }
 
@@ -32,7 +32,7 @@ fn every_combination_is_there_once_and_the_first_method_comes_first() {
 #[test]
 fn a_task_becomes_arguments_of_the_program() {
     let out = Path::new("runs/x");
-    let train = |plan: &Plan| plan.train_arguments(&plan.tasks[0], out, 1).join(" ");
+    let train = |plan: &BenchmarkPlan| plan.train_arguments(&plan.tasks[0], out, 1).join(" ");
     let mut plan = of_eth();
     plan.settings.train_pedestrians = Some(800);
     plan.settings.proposal_steps = Some(30);
@@ -59,11 +59,11 @@ fn a_plan_survives_its_file_and_may_gain_tasks() {
     let folder = tempfile::tempdir().unwrap();
     let one = published("--folds eth --variants all");
     one.write(folder.path()).unwrap();
-    assert_eq!(Plan::read(folder.path()).unwrap(), one);
+    assert_eq!(BenchmarkPlan::read(folder.path()).unwrap(), one);
     let mut two = published("--folds eth,hotel");
     two.settings.data = Some(PathBuf::from("/moved"));
     two.write(folder.path()).unwrap();
-    let message = Plan::read(&folder.path().join("none")).unwrap_err().to_string();
+    let message = BenchmarkPlan::read(&folder.path().join("none")).unwrap_err().to_string();
     assert!(message.contains("that `ddl benchmark` made"), "{message}");
 }
 
@@ -72,7 +72,7 @@ fn results_of_other_settings_or_of_another_version_do_not_mix() {
     let folder = tempfile::tempdir().unwrap();
     let before = of_eth();
     before.write(folder.path()).unwrap();
-    let refused = |plan: &Plan| plan.write(folder.path()).unwrap_err().to_string();
+    let refused = |plan: &BenchmarkPlan| plan.write(folder.path()).unwrap_err().to_string();
     let mut other = before.clone();
     other.settings.protocols = vec![Protocol::Fair];
     other.settings.epochs = 200;

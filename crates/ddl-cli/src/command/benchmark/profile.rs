@@ -1,6 +1,6 @@
 //! The amount of work of each profile.
 
-use crate::command::benchmark::pace::Pace;
+use crate::command::benchmark::pace::TaskPace;
 use crate::command::recipe::Recipe;
 use clap::ValueEnum;
 use ddl::network::{LearningRateSchedule, TrainingConfig};
@@ -26,7 +26,7 @@ impl fmt::Display for Profile {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Work {
+pub(crate) struct ProfileWork {
     /// Number of folds: the first ones of the convention.
     pub(super) folds: usize,
     pub(super) proposal_steps: Option<u64>,
@@ -63,17 +63,17 @@ impl Optimiser {
 impl Profile {
     /// Seconds of one core (AMD EPYC), mean over the folds; only their ratios count. Those of the published recipe are
     /// computed from the time of a step (docs/published.md) and of the scores of zara1 (320 s).
-    pub(super) fn pace(self, recipe: Recipe) -> Pace {
+    pub(super) fn pace(self, recipe: Recipe) -> TaskPace {
         match (recipe, self) {
-            (Recipe::Recommended, Self::Smoke) => Pace::of_seconds(24.0, 4.0, 10.0),
-            (Recipe::Recommended, Self::Quick) => Pace::of_seconds(243.0, 29.0, 22.0),
-            (Recipe::Recommended, Self::Paper) => Pace::of_seconds(243.0, 58.0, 65.0),
-            (Recipe::Published, Self::Smoke | Self::Quick) => Pace::of_seconds(0.0, 180.0, 210.0),
-            (Recipe::Published, Self::Paper) => Pace::of_seconds(0.0, 10_000.0, 980.0),
+            (Recipe::Recommended, Self::Smoke) => TaskPace::of_seconds(24.0, 4.0, 10.0),
+            (Recipe::Recommended, Self::Quick) => TaskPace::of_seconds(243.0, 29.0, 22.0),
+            (Recipe::Recommended, Self::Paper) => TaskPace::of_seconds(243.0, 58.0, 65.0),
+            (Recipe::Published, Self::Smoke | Self::Quick) => TaskPace::of_seconds(0.0, 180.0, 210.0),
+            (Recipe::Published, Self::Paper) => TaskPace::of_seconds(0.0, 10_000.0, 980.0),
         }
     }
 
-    pub(crate) fn work(self, recipe: Recipe) -> Work {
+    pub(crate) fn work(self, recipe: Recipe) -> ProfileWork {
         let (folds, test_pedestrians) = match self {
             Self::Smoke => (2, Some(150)),
             Self::Quick => (5, Some(2500)),
@@ -88,7 +88,7 @@ impl Profile {
             (Recipe::Published, Self::Quick) => (10, Some(4000), Some(Optimiser::short())),
             (Recipe::Published, Self::Paper) => (200, None, Some(Optimiser::published())),
         };
-        Work {
+        ProfileWork {
             folds,
             // The published recipe has no network of goals.
             proposal_steps: ((recipe, self) == (Recipe::Recommended, Self::Smoke)).then_some(40),

@@ -1,7 +1,7 @@
 //! The report of all finished runs.
 
 use crate::command::Reporting;
-use crate::command::benchmark::plan::Plan;
+use crate::command::benchmark::plan::BenchmarkPlan;
 use crate::command::benchmark::profile::Profile;
 use crate::output;
 use crate::telling::tell;
@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The main tables of the headline window rule, as docs/results.md shows them.
 const SUMMARY: &str = "summary.md";
 
-pub(super) fn write(plan: &Plan, runs: &[PathBuf], out: &Path, reporting: &Reporting) -> anyhow::Result<()> {
+pub(super) fn write(plan: &BenchmarkPlan, runs: &[PathBuf], out: &Path, reporting: &Reporting) -> anyhow::Result<()> {
     let settings = &plan.settings;
     let profile = match settings.profile {
         Profile::Smoke => "smoke (a test of the program: the numbers mean nothing)".to_owned(),

@@ -1,7 +1,7 @@
 //! Runs the tasks of a plan in parallel, in processes of the program.
 
 use crate::command::benchmark::child::{self, BEAT};
-use crate::command::benchmark::plan::{Plan, Task};
+use crate::command::benchmark::plan::{BenchmarkPlan, Task};
 use crate::command::benchmark::record::Record;
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
@@ -69,7 +69,13 @@ pub(super) fn side_by_side(asked: Option<usize>, device: DeviceChoice, cores: us
 impl Workers {
     /// The end of each task, in the plan's order. After a request to stop no task starts, and running tasks save their
     /// state.
-    pub(super) fn run(&self, plan: &Plan, out: &Path, watch: Watcher<'_>, interrupt: &Interrupt) -> Vec<TaskEnd> {
+    pub(super) fn run(
+        &self,
+        plan: &BenchmarkPlan,
+        out: &Path,
+        watch: Watcher<'_>,
+        interrupt: &Interrupt,
+    ) -> Vec<TaskEnd> {
         let next = AtomicUsize::new(0);
         let ends = Mutex::new(vec![TaskEnd::Interrupted; plan.tasks.len()]);
         let work = || {
@@ -93,7 +99,7 @@ impl Workers {
 
     pub(super) fn run_task(
         &self,
-        plan: &Plan,
+        plan: &BenchmarkPlan,
         task: &Task,
         out: &Path,
         watch: Watcher<'_>,
@@ -109,7 +115,7 @@ impl Workers {
 
     fn train_and_score(
         &self,
-        plan: &Plan,
+        plan: &BenchmarkPlan,
         task: &Task,
         out: &Path,
         watch: Watcher<'_>,

@@ -34,15 +34,15 @@ impl Bench {
         fs::read_to_string(self.out().join(task).join("log.txt")).unwrap()
     }
 
-    fn run(&self, plan: &Plan) -> Vec<TaskEnd> {
+    fn run(&self, plan: &BenchmarkPlan) -> Vec<TaskEnd> {
         let ignore = |_: &Task, _: Event<'_>| {};
         self.workers.run(plan, &self.out(), &ignore, &Interrupt::default())
     }
 }
 
-fn plan(folds: &[&str]) -> Plan {
+fn plan(folds: &[&str]) -> BenchmarkPlan {
     let settings = plan_of("--epochs 20").unwrap().settings;
-    Plan::new(settings, folds, &[Method::FULL], &[1]).unwrap()
+    BenchmarkPlan::new(settings, folds, &[Method::FULL], &[1]).unwrap()
 }
 
 fn finished(ends: &[TaskEnd]) -> usize {

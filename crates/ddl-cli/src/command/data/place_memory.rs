@@ -1,6 +1,7 @@
 //! Summary and picture of the memory of a place.
 
 use crate::output::write_output;
+use crate::paths::OutputFile;
 use crate::telling::many;
 use anyhow::bail;
 use clap::Args;
@@ -26,7 +27,7 @@ pub(super) struct MemoryOfFile {
 pub(super) struct MemoryPicture {
     /// Draw the memory of a place as SVG: where many pedestrians walk, appear and disappear
     #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
+    svg: Option<OutputFile>,
 }
 
 /// Whether a file holds a memory. Pipes are not tested: reading consumes them.

@@ -2,6 +2,7 @@
 
 use crate::command::RecordingsAt;
 use crate::command::test_windows::{TestWindows, ensure_scene_of_star};
+use crate::paths::OutputPlace;
 use anyhow::Context as _;
 use clap::Args;
 use ddl::data::Convention;
@@ -35,7 +36,7 @@ pub(crate) struct OtherProgram {
     intersection: bool,
     /// Folder for the report: report.html, report.md, report.json, moments.json and figures
     #[arg(long, value_name = "FOLDER")]
-    pub(crate) out: Option<PathBuf>,
+    pub(crate) out: Option<OutputPlace>,
 }
 
 impl OtherProgram {

@@ -18,12 +18,12 @@ const MOST_SCENES: usize = 20;
 /// Collects rows until a warning is given, or there are enough.
 #[derive(Debug, Default)]
 pub(super) struct FirstRows {
-    scenes: BTreeMap<Option<SceneName>, SceneRows>,
+    scenes: BTreeMap<Option<SceneName>, FirstSceneRows>,
     is_told: bool,
 }
 
 #[derive(Debug, Default)]
-struct SceneRows {
+struct FirstSceneRows {
     frame_step: i64,
     rows: Vec<Observation>,
     pedestrians: BTreeSet<PedestrianId>,
@@ -69,7 +69,7 @@ impl FirstRows {
 
     /// Warns of positions or a rate that cannot be right, as soon as somebody of a scene was seen for 8 steps.
     pub(super) fn warn_if_fast(&mut self, scene: &Option<SceneName>) {
-        let is_wanted = |rows: &&mut SceneRows| !rows.is_looked_at && !rows.is_done;
+        let is_wanted = |rows: &&mut FirstSceneRows| !rows.is_looked_at && !rows.is_done;
         if let Some(rows) = self.scenes.get_mut(scene).filter(is_wanted) {
             rows.is_looked_at = true;
             if let Some(warning @ PlausibilityWarning::Fast { .. }) = rows.warning().filter(|_| !self.is_told) {
@@ -89,7 +89,7 @@ impl FirstRows {
     }
 }
 
-impl SceneRows {
+impl FirstSceneRows {
     /// Gives the warning that a file with these rows gets, and returns whether there was one. Two kinds are left out: a
     /// single jump, because the position is reported as left out, and rows that are never 0.4 s apart, because the end
     /// of the stream reports that no pedestrian was observed long enough.

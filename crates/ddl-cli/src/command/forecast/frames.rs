@@ -1,10 +1,14 @@
 //! Frames of standard input, read on a separate thread, so that forecasts do not wait for input.
 
-use ddl::data::{ColumnChoice, DataError, Frame, FrameReader, TimeUnit};
+use crate::units::Units;
+use anyhow::{Context as _, bail};
+use ddl::data::{Clock, ColumnChoice, DataError, Frame, FrameReader, Homography, Observation, TimeUnit};
 use std::io::{BufRead, stdin};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
+/// Largest difference of frame numbers that is taken for a step of 0.4 s. A larger one may be a gap, or timestamps.
+const LONGEST_STEP: i64 = 1000;
 /// Number of frames that are read ahead. When they are full, the thread waits, and so does the writer of the stream.
 const AHEAD: usize = 64;
 
@@ -27,6 +31,41 @@ impl StatedTime {
             time_unit: frames.time_unit(),
             notes: frames.take_notes(),
         }
+    }
+
+    /// The clock if no option gives it, and the reason if it is assumed; `None` if it needs another frame.
+    ///
+    /// `apart`: difference of the first two frame numbers of a scene.
+    pub(super) fn clock(&self, units: &Units, apart: Option<i64>) -> anyhow::Result<Option<(Clock, Option<String>)>> {
+        if let Some(unit) = self.time_unit {
+            return Ok(Some((Clock::with_stamps(unit), None)));
+        }
+        if let Some(rate) = self.frame_rate {
+            let clock = Clock::with_frame_time(1.0 / rate).context("standard input: the rate of a comment")?;
+            return Ok(Some((clock, Some(format!("at {rate} frames a second")))));
+        }
+        let Some(apart) = apart else {
+            return Ok(None);
+        };
+        if let Some(rate) = self.rows_a_second {
+            let clock = Clock::with_frame_time(1.0 / (rate * apart as f64)).with_context(|| {
+                format!(
+                    "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} apart"
+                )
+            })?;
+            return Ok(Some((clock, Some(format!("from the fps of the scenes, {rate}")))));
+        }
+        if let Some((clock, reason)) = units.remembered_live_clock()? {
+            return Ok(Some((clock, Some(reason))));
+        }
+        if apart > LONGEST_STEP {
+            bail!(
+                "standard input: the first two frames are {apart} apart; give the number of frames in 0.4 s with --fps or \
+                 --frame-step"
+            );
+        }
+        let clock = Clock::with_frame_step(apart)?;
+        Ok(Some((clock, Some("the difference of the first two frames".to_owned()))))
     }
 }
 
@@ -83,4 +122,16 @@ fn read<R: BufRead>(mut frames: FrameReader<R>, to: &SyncSender<Incoming>) {
             return;
         }
     }
+}
+
+/// The frame in metres.
+pub(super) fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Result<Frame> {
+    let Some(homography) = homography else {
+        return Ok(frame);
+    };
+    for (pedestrian, position) in &mut frame.pedestrians {
+        let seen = Observation::new(frame.number, *pedestrian, *position);
+        *position = homography.place(&seen, &frame.names).context("standard input")?;
+    }
+    Ok(frame)
 }

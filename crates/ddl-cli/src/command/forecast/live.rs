@@ -1,24 +1,18 @@
 //! `ddl forecast -`: reads tracks from standard input and forecasts every frame.
 
 use crate::command::forecast::first_rows::FirstRows;
-use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime};
+use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime, to_ground};
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::state::StreamState;
 use crate::command::forecast::stream::{AnsweringCommand, StreamOptions, answers_of};
 use crate::interrupt::Interrupt;
-use crate::output::file_of;
+use crate::output::StreamOutput;
 use crate::telling::{tell, tell_note, words};
 use crate::units::Units;
 use anyhow::{Context as _, bail};
-use ddl::data::{Clock, Frame, Homography, LiveTracks, Observation, SceneName, Window};
+use ddl::data::{Clock, Frame, Homography, LiveTracks, SceneName, Window};
 use ddl::{Ddl, Moment, Note, Request, SceneBatch, SceneWindows, Session, SessionMemory, steps_in_words};
-use std::fs::File;
-use std::io::{Write as _, stdout};
-use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
-/// Largest difference of frame numbers that is taken for a step of 0.4 s. A larger one may be a gap, or timestamps.
-const LONGEST_STEP: i64 = 1000;
 
 /// Number of waiting windows at which reading stops, if every frame is forecast.
 const MOST_WAITING: usize = 64;
@@ -79,7 +73,7 @@ fn answer(command: &dyn AnsweringCommand, model: &Arc<Ddl>, watching: &Mutex<Wat
         homography,
         clock,
         early: Vec::new(),
-        output: ForecastOutput::open(forecast.output.as_deref())?,
+        output: StreamOutput::open(forecast.output.as_deref())?,
         state: StreamState::default(),
         left_out: LeftOut::default(),
         is_empty: true,
@@ -172,7 +166,7 @@ struct Stream<'a> {
     clock: Option<Clock>,
     /// The first frame of each scene, until the clock is known.
     early: Vec<Frame>,
-    output: ForecastOutput,
+    output: StreamOutput,
     state: StreamState,
     left_out: LeftOut,
     is_empty: bool,
@@ -235,7 +229,7 @@ impl Stream<'_> {
             let mut early = self.early.iter();
             let first = early.find(|early| early.scene == frame.scene);
             let apart = first.map(|first| frame.number - first.number);
-            let Some((clock, reason)) = clock_of(units, apart, stated)? else {
+            let Some((clock, reason)) = stated.clock(units, apart)? else {
                 self.early.push(frame);
                 return Ok(());
             };
@@ -365,85 +359,4 @@ impl Stream<'_> {
             None => "cannot write to standard output".to_owned(),
         })
     }
-}
-
-struct ForecastOutput {
-    /// `None` for standard output.
-    file: Option<File>,
-    /// Whether a forecast was written. The first forecast replaces an existing file; an input without forecasts does
-    /// not.
-    begun: bool,
-}
-
-impl ForecastOutput {
-    /// Opens the output before the first forecast, so that an error shows at once.
-    fn open(path: Option<&Path>) -> anyhow::Result<Self> {
-        let mut options = File::options();
-        let options = options.write(true).create(true).truncate(false);
-        let open = |path: &Path| {
-            let file = options.open(path);
-            file.with_context(|| format!("cannot write {}", path.display()))
-        };
-        Ok(Self { file: file_of(path).map(open).transpose()?, begun: false })
-    }
-
-    fn write(&mut self, text: &str) -> std::io::Result<()> {
-        let Some(file) = &mut self.file else {
-            let mut out = stdout().lock();
-            out.write_all(text.as_bytes())?;
-            return out.flush();
-        };
-        // A device or a pipe has no earlier content.
-        if !self.begun && file.metadata()?.is_file() {
-            file.set_len(0)?;
-        }
-        self.begun = true;
-        file.write_all(text.as_bytes())
-    }
-}
-
-fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Result<Frame> {
-    let Some(homography) = homography else {
-        return Ok(frame);
-    };
-    for (pedestrian, position) in &mut frame.pedestrians {
-        let seen = Observation::new(frame.number, *pedestrian, *position);
-        *position = homography.place(&seen, &frame.names).context("standard input")?;
-    }
-    Ok(frame)
-}
-
-/// The clock if no option gives it, and the reason if it is assumed; `None` if it needs another frame.
-///
-/// `apart`: difference of the first two frame numbers of a scene.
-fn clock_of(units: &Units, apart: Option<i64>, stated: &StatedTime) -> anyhow::Result<Option<(Clock, Option<String>)>> {
-    if let Some(unit) = stated.time_unit {
-        return Ok(Some((Clock::with_stamps(unit), None)));
-    }
-    if let Some(rate) = stated.frame_rate {
-        let clock = Clock::with_frame_time(1.0 / rate).context("standard input: the rate of a comment")?;
-        return Ok(Some((clock, Some(format!("at {rate} frames a second")))));
-    }
-    let Some(apart) = apart else {
-        return Ok(None);
-    };
-    if let Some(rate) = stated.rows_a_second {
-        let clock = Clock::with_frame_time(1.0 / (rate * apart as f64)).with_context(|| {
-            format!(
-                "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} apart"
-            )
-        })?;
-        return Ok(Some((clock, Some(format!("from the fps of the scenes, {rate}")))));
-    }
-    if let Some((clock, reason)) = units.remembered_live_clock()? {
-        return Ok(Some((clock, Some(reason))));
-    }
-    if apart > LONGEST_STEP {
-        bail!(
-            "standard input: the first two frames are {apart} apart; give the number of frames in 0.4 s with --fps or \
-             --frame-step"
-        );
-    }
-    let clock = Clock::with_frame_step(apart)?;
-    Ok(Some((clock, Some("the difference of the first two frames".to_owned()))))
 }

@@ -77,7 +77,7 @@ pub(crate) struct NamedPlan {
 }
 
 #[derive(Deserialize)]
-struct Row {
+struct PlanRow {
     #[serde(default)]
     plan: String,
     t: f64,
@@ -108,7 +108,7 @@ pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
     }
     let mut plans: Vec<(String, Vec<PlanPoint>)> = Vec::new();
     for row in reader.deserialize() {
-        let Row { plan, t, x, y, radius } = row.with_context(|| format!("{name}"))?;
+        let PlanRow { plan, t, x, y, radius } = row.with_context(|| format!("{name}"))?;
         let point = PlanPoint { time: t, position: [x, y], radius: radius.unwrap_or(0.0) };
         let is_new = plans.last().is_none_or(|(last, _)| *last != plan);
         if is_new && plans.iter().any(|(earlier, _)| *earlier == plan) {

@@ -3,6 +3,7 @@
 use crate::command::forecast::state::StreamState;
 use crate::command::{Machine, ModelChoice};
 use crate::output::file_of;
+use crate::paths::{MemoryPath, OutputFile};
 use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use anyhow::bail;
@@ -13,7 +14,6 @@ use ddl_mcap::ForecastLog;
 use std::borrow::Borrow;
 use std::fs::File;
 use std::io::IsTerminal as _;
-use std::path::PathBuf;
 
 /// Number of lines above which a terminal gets a note.
 const LOOKED_THROUGH: usize = 100;
@@ -31,7 +31,7 @@ pub(crate) struct StreamOptions {
     pub(super) tracks: TrackOptions,
     /// File to write [default: standard output, also as `-`]; forecasts also as .mcap, for Foxglove and ROS 2
     #[arg(long, short)]
-    pub(crate) output: Option<PathBuf>,
+    pub(crate) output: Option<OutputFile>,
     /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
     /// missing, written every minute and at the end
     ///
@@ -39,7 +39,7 @@ pub(crate) struct StreamOptions {
     /// for each. The first 30 pedestrians show whether the memory is of this place; if it is not, the file is left
     /// unchanged and forecasts continue without it. `ddl data FILE` summarises the file.
     #[arg(long, value_name = "FILE")]
-    pub(super) memory: Option<PathBuf>,
+    pub(super) memory: Option<MemoryPath>,
     /// With `-`: if frames arrive faster than they are forecast, forecast only the latest of each scene, and report how
     /// many were dropped
     ///

@@ -7,7 +7,7 @@ use ddl::data::{FrameNumber, PedestrianName};
 use serde::Serialize;
 
 #[derive(Serialize)]
-struct Row {
+struct PositionRow {
     observed_until: FrameNumber,
     pedestrian: PedestrianName,
     hypothesis: usize,
@@ -76,7 +76,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
                 let goal = goal.map(|goal| goal.map(table_metres));
                 for (t, (position, &frame)) in positions.iter().zip(&frames).enumerate() {
                     let [x, y] = position.map(table_metres);
-                    let row = Row {
+                    let row = PositionRow {
                         observed_until: moment.observed_until().rounded(),
                         pedestrian: moment.window.name(i),
                         hypothesis,

@@ -1,6 +1,6 @@
 //! Packs the models of a finished benchmark together with their results, as the built-in models.
 
-use crate::command::benchmark::{Method, Plan, Profile, Task};
+use crate::command::benchmark::{BenchmarkPlan, Method, Profile, Task};
 use crate::command::pack::pack_model;
 use crate::command::recipe::Recipe;
 use anyhow::{Context as _, ensure};
@@ -30,7 +30,7 @@ struct Reported {
 }
 
 pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::Result<Vec<(PathBuf, usize)>> {
-    let plan = Plan::read(benchmark)?;
+    let plan = BenchmarkPlan::read(benchmark)?;
     let tasks = tasks(&plan, seed)?;
     let mut reached = BTreeMap::new();
     for task in &tasks {
@@ -71,7 +71,7 @@ pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::R
     Ok(files.map(|(file, _, numbers)| (file, numbers)).collect())
 }
 
-fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
+fn tasks(plan: &BenchmarkPlan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
     let settings = &plan.settings;
     let whole = Profile::Paper.work(Recipe::Recommended).epochs;
     ensure!(
