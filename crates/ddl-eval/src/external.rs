@@ -35,10 +35,9 @@ use expected::ExpectedForecasts;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ExternalFormat {
-    /// A JSON object for each pedestrian of a window, as [`write_forecasts`] and `ddl forecast --format jsonl` write
-    /// it.
+    /// A JSON object for each pedestrian of a window, as [`write_forecasts`] and the program write it.
     JsonLines,
-    /// A comma-separated table with a header and a row for each position, as `ddl forecast` writes it.
+    /// A comma-separated table with a header and a row for each position, as the program writes it.
     Table,
 }
 

@@ -98,7 +98,7 @@ fn part_of(stamp: &Value, names: &[&str]) -> Result<i64, String> {
     number.ok_or_else(|| format!("header.stamp.{name} is {value}; it must be a whole number"))
 }
 
-/// JSON as `ddl forecast -` reads it, one or several lines of a moment. A frame is no time.
+/// JSON as of a stream of tracks, one or several lines of a moment. A frame is no time.
 fn of_lines(bytes: &[u8]) -> Result<Option<Decoded>, String> {
     if !bytes.trim_ascii_start().starts_with(b"{") || !bytes.windows(TRACK.len()).any(|part| part == TRACK) {
         return Ok(None);

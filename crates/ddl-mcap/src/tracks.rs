@@ -4,7 +4,7 @@ use crate::decode::{Decoded, READ, decode, type_name};
 use crate::error::LogError;
 use crate::files::files;
 use crate::messages::Messages;
-use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, Numbering, PedestrianId};
+use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, Numbering, PedestrianId, Setting};
 use ddl_data::{LiveError, LiveTracks, Observation, Recording, RecordingError, TimeUnit, escaped};
 use mcap::Channel;
 use std::collections::{BTreeMap, BTreeSet};
@@ -61,9 +61,12 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
                 let decoded = decode(&message);
                 let added = decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep));
                 added.map_err(|problem| {
-                    let hint = asked.map_or("; --topic reads another topic", |_| "");
+                    let hint =
+                        asked.map_or_else(|| format!("; {} reads another topic", Setting::Topic), |_| String::new());
                     let (topic, number) = (&channel.topic, message.sequence);
-                    LogError::at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))(problem + hint)
+                    LogError::at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))(
+                        problem + &hint,
+                    )
                 })?;
             }
         }
@@ -74,7 +77,8 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
     let (name, topic) = choose(topics, asked).map_err(LogError::at(path.display()))?;
     let words = topic.words(&name);
     if topic.rows.is_empty() {
-        let problem = format!("{words}; no row is left, and --keep class=NAME chooses another class");
+        let keep = Setting::Keep.to("class=NAME");
+        let problem = format!("{words}; no row is left, and {keep} chooses another class");
         return Err(LogError::at(path.display())(problem));
     }
     notes.insert(0, words);
@@ -97,7 +101,7 @@ fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(S
     let mut found = topics.iter().filter(|(_, topic)| holds_tracks(topic)).map(|(name, _)| name.clone());
     match (asked, found.next(), found.next()) {
         (_, Some(name), None) => Ok(topics.remove_entry(&name).unwrap_or_default()),
-        (None, Some(_), _) => Err(format!("choose a topic by --topic: {}", listed(holds_tracks))),
+        (None, Some(_), _) => Err(format!("choose a topic by {}: {}", Setting::Topic, listed(holds_tracks))),
         _ if topics.is_empty() => Err("there is no message; is the file empty or cut off?".to_owned()),
         (None, None, _) => Err(format!("no tracks in {}; read is {READ}", listed(|_| true))),
         (Some(asked), ..) => Err(match topics.get(asked) {

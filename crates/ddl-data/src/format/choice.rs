@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use ddl_core::Setting;
+
 use crate::clock::TimeUnit;
 use crate::format::column_names::{LengthUnit, Role, role_names, role_of_unit, unit_of_role};
 use crate::format::kind::Format;
@@ -76,9 +78,9 @@ impl ColumnChoice {
         if self.roles.is_empty() && self.keep.is_none() && self.unit.is_none() {
             Ok(())
         } else {
-            Err(format!(
-                "the format {format} has no columns and units to choose; leave out --columns, --keep and --unit"
-            ))
+            let [columns, keep, unit] = [Setting::Columns, Setting::Keep, Setting::Unit];
+            let leave = format!("leave out {columns}, {keep} and {unit}");
+            Err(format!("the format {format} has no columns and units to choose; {leave}"))
         }
     }
 

@@ -1,5 +1,7 @@
 //! The tracks of the Edinburgh forum: a line `TRACK.R12=[[x y frame];[x y frame];...];` for each pedestrian.
 
+use ddl_core::Setting;
+
 use crate::format::choice::ColumnChoice;
 use crate::format::field;
 use crate::format::place::{FilePlace, Misread};
@@ -13,7 +15,6 @@ const RATE: f64 = 9.0;
 /// Pixels in a metre of the floor: 24.7 mm each.
 const PER_METRE: f64 = 1.0 / 0.0247;
 const NOTE: &str = "read as tracks of the Edinburgh forum, 9 frames a second";
-const SCALE: &str = "a pixel is taken as 24.7 mm (or give --homography)";
 
 /// Whether a first line is that of such a file.
 pub(super) fn is_first(line: &str) -> bool {
@@ -57,7 +58,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
             rows.push(TrackRow::numbered(frame, pedestrian, position, place));
         }
     }
-    let scale = (!choice.is_mapped).then(|| SCALE.to_owned());
+    let scale = (!choice.is_mapped).then(|| format!("a pixel is taken as 24.7 mm (or give {})", Setting::Homography));
     let left_out = (repeated > 0).then(|| format!("rows left out: {repeated} at the same frame as the one before"));
     let notes = std::iter::once(NOTE.to_owned()).chain(scale).chain(left_out);
     Ok(TextFile::without_columns(rows, notes, Some(RATE)))

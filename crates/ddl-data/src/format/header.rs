@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+use ddl_core::Setting;
+
 use crate::clock::TimeUnit;
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{
@@ -190,7 +192,7 @@ impl Roles<'_> {
         let mut faults = self.repeated();
         faults.extend(self.not_there(choice));
         faults.extend(self.other_rows());
-        // `--unit` sets the unit of both columns.
+        // A unit that is given is that the unit of both columns.
         faults.extend(self.mixed_units().filter(|_| choice.unit.is_none()));
         let time = self.of(Role::Time).or(self.of(Role::Frame));
         let parts = time.zip(self.of(Role::Pedestrian)).zip(self.place());
@@ -253,23 +255,27 @@ impl Roles<'_> {
         let mut remarks = Vec::new();
         if let Some(frame) = self.of(Role::Frame).filter(|frame| frame.index != time.index) {
             let [when, other] = [time, frame].map(|named| quoted(self.names[named.index]));
-            remarks.push(format!("the times are those of the column {when}; --columns frame={other} takes the frames"));
+            let frames = Setting::Columns.to(format!("frame={other}"));
+            remarks.push(format!("the times are those of the column {when}; {frames} takes the frames"));
         }
         let size = self.index(Role::Width).zip(self.index(Role::Height));
         if let Some(x) = self.index(Role::X).filter(|_| is_point && is_assumed && size.is_some()) {
             let x = quoted(self.names[x]);
             remarks.push(if x.eq_ignore_ascii_case("x") {
-                "x and y are read as the position; if they are the corner of the box, give --columns left=x,top=y"
-                    .to_owned()
+                let corner = Setting::Columns.to("left=x,top=y");
+                format!("x and y are read as the position; if they are the corner of the box, give {corner}")
             } else {
-                format!("{x} is read as metres; of a box in a picture, give --unit px and --homography")
+                let (pixels, homography) = (Setting::Unit.to("px"), Setting::Homography);
+                format!("{x} is read as metres; of a box in a picture, give {pixels} and {homography}")
             });
         }
         // A known name of the x coordinate, with z for x.
         let is_x = |name: &str| named(0, name).is_some_and(|named| named.role == Role::X);
         let is_height = |name: &&&str| !is_x(name) && is_x(&name.to_ascii_lowercase().replace('z', "x"));
         if let Some(z) = self.names.iter().find(is_height).filter(|_| is_point) {
-            remarks.push(format!("{} is taken for the height; if y is, give --columns y={0}", quoted(z)));
+            let z = quoted(z);
+            let given = Setting::Columns.to(format!("y={z}"));
+            remarks.push(format!("{z} is taken for the height; if y is, give {given}"));
         }
         if self.names.iter().any(|name| name.eq_ignore_ascii_case("trackLifetime")) {
             remarks
@@ -303,7 +309,7 @@ impl Roles<'_> {
         foot.or(other.map(|(right, bottom)| Place::FootOfCorners([left, top, right, bottom])))
     }
 
-    /// The column that `--keep` names, by its role or its name.
+    /// The column by which rows are kept, by its role or its name.
     fn kept(&self, name: &str) -> Option<usize> {
         let of_role = self.index(Role::Class).filter(|_| name == "class");
         of_role.or_else(|| (self.names.iter()).position(|column| is_called(self.names, column, name)))
@@ -332,16 +338,15 @@ impl Roles<'_> {
         }
         if let (Some(Place::Point([x, _])), Some(corner)) = (self.point(), self.corner()) {
             let [x, corner] = [x, corner.columns()[0]].map(|index| quoted(self.names[index]));
-            let fault = format!(
-                "the columns {x:?} and {corner:?} both say where: --columns left={corner} takes the box, x={x} \
-                 the point"
-            );
+            let of_box = Setting::Columns.to(format!("left={corner}"));
+            let fault =
+                format!("the columns {x:?} and {corner:?} both say where: {of_box} takes the box, x={x} the point");
             faults.push((None, fault));
         }
         if !faults.is_empty() {
             faults.truncate(MOST_FAULTS);
-            let choose = "leave one of two out, or choose (--columns x=NAME,y=NAME, left=NAME,...)".to_owned();
-            faults.push((None, choose));
+            let example = Setting::Columns.to("x=NAME,y=NAME, left=NAME,...");
+            faults.push((None, format!("leave one of two out, or choose ({example})")));
         }
         faults
     }
@@ -384,7 +389,8 @@ impl Roles<'_> {
         };
         (!are_alike).then(|| {
             let [of_x, of_y] = [x, y].map(|named| quoted(self.names[named.index]));
-            (Some(y.index), format!("the columns {of_x:?} and {of_y:?} have different units; --unit sets one for both"))
+            let unit = Setting::Unit;
+            (Some(y.index), format!("the columns {of_x:?} and {of_y:?} have different units; {unit} sets one for both"))
         })
     }
 
@@ -404,8 +410,8 @@ impl Roles<'_> {
         let unknown: Vec<String> = unknown.map(|name| format!("{name:?}")).collect();
         let mut rename = String::new();
         if !unknown.is_empty() {
-            let hint = "; rename the column that holds it, or name it";
-            rename = format!("{hint} (--columns {role}=NAME): unknown are {}", first_of(&unknown));
+            let (name, unknown) = (Setting::Columns.to(format!("{role}=NAME")), first_of(&unknown));
+            rename = format!("; rename the column that holds it, or name it ({name}): unknown are {unknown}");
         }
         Some((self.unknown.first().copied(), format!("still missing: {}{rename}", missing.join(", "))))
     }

@@ -1,6 +1,6 @@
 //! The columns of a position, and the position in them.
 
-use ddl_core::Position;
+use ddl_core::{Position, Setting};
 
 use crate::format::place::{FilePlace, Misread};
 
@@ -54,8 +54,10 @@ impl Place {
             _ => !is_backward.contains(&false),
         };
         if is_wrong {
-            let problem = "the box ends before it begins; leave out rows without a box, or say which columns are which \
-                           (--columns left=NAME,width=NAME,...)";
+            let example = Setting::Columns.to("left=NAME,width=NAME,...");
+            let problem = format!(
+                "the box ends before it begins; leave out rows without a box, or say which columns are which ({example})"
+            );
             let side = usize::from(!is_backward[0]);
             return Err(FilePlace::field(line, columns[2 + side] + 1).wrong(problem));
         }

@@ -2,6 +2,8 @@
 
 use std::fmt::Display;
 
+use ddl_core::Setting;
+
 use crate::clock::{Clock, TimeUnit};
 
 pub(super) const EMPTY: &str = "the file holds no observation; is it empty or cut off?";
@@ -14,8 +16,10 @@ pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String 
 }
 
 pub(super) fn duplicate(pedestrian: impl Display, (frame, unit): (i64, Option<TimeUnit>), first_line: usize) -> String {
-    let coarse =
-        unit.map_or("", |_| ", or take frame numbers if the times are too coarse (of a table: --columns frame=NAME)");
+    let coarse = unit.map_or_else(String::new, |_| {
+        let frames = Setting::Columns.to("frame=NAME");
+        format!(", or take frame numbers if the times are too coarse (of a table: {frames})")
+    });
     let when = when(frame, unit);
     format!("pedestrian {pedestrian} is in {when} already (line {first_line}); keep one row{coarse}")
 }

@@ -3,6 +3,8 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
+use ddl_core::Setting;
+
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{is_one_of, words};
 use crate::format::field;
@@ -85,7 +87,7 @@ impl RowFilter {
             let is_marked = is_marked(found).ok_or_else(|| {
                 let [name, found] = [name, found].map(field::quoted);
                 let wanted = format!("{name} must be 0, 1, yes or no, found {found:?}");
-                (*index, format!("{wanted}; --keep {name}=VALUE chooses rows by it"))
+                (*index, format!("{wanted}; {} chooses rows by it", Setting::Keep.to(format!("{name}=VALUE"))))
             })?;
             if is_marked == *left_out {
                 let why = if is_marked { "marked lost".to_owned() } else { format!("with {name} 0") };
@@ -133,8 +135,8 @@ impl RowFilter {
     pub(super) fn classes_read(&self) -> Option<String> {
         let classes: Vec<String> = self.classes.iter().map(|class| format!("{class:?}")).collect();
         (!classes.is_empty()).then(|| {
-            let classes = first_of(&classes);
-            format!("rows of class {classes} are read as pedestrians; --keep class=... chooses")
+            let (classes, keep) = (first_of(&classes), Setting::Keep.to("class=..."));
+            format!("rows of class {classes} are read as pedestrians; {keep} chooses")
         })
     }
 

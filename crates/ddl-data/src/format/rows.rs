@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ddl_core::{Numbering, PedestrianId, PedestrianNames, Position};
+use ddl_core::{Numbering, PedestrianId, PedestrianNames, Position, Setting};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::error::DataError;
@@ -61,8 +61,11 @@ fn observations(
         return Err(FilePlace::line(1).wrong(EMPTY));
     }
     if let Some(row) = rows.iter().find(|row| row.scene != rows[0].scene) {
-        let problem = "a file holds one recording, but this row is of another scene than the first; pipe it to `ddl \
-                       forecast -`, make a file of each scene, or read one scene of a table (--keep scene=NAME)";
+        let keep = Setting::Keep.to("scene=NAME");
+        let problem = format!(
+            "a file holds one recording, but this row is of another scene than the first; read it as a stream, make a \
+             file of each scene, or read one scene of a table ({keep})"
+        );
         return Err(row.place.wrong(problem));
     }
     if let Some(row) = rows.iter().find(|row| row.unit != unit) {

@@ -424,7 +424,7 @@ impl<R: BufRead> FrameReader<R> {
             let minutes = idle_timeout.as_secs() / 60;
             return Err(self.wrong(format!(
                 "scene {scene} exceeds the limit of {MOST_SCENES} scenes; a scene is forgotten after {minutes} minutes \
-                 without a line; give the other scenes to another `ddl forecast -`"
+                 without a line; give the other scenes to another reader"
             )));
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! Files of text with one observation per line.
 
+use ddl_core::Setting;
+
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::is_known;
 use crate::format::comments::{is_comment, rate_of};
@@ -95,7 +97,7 @@ pub(super) fn parse(text: &str, format: Format, choice: &ColumnChoice) -> Result
     if read.is_empty()
         && let Some(rows) = columns.left_out()
     {
-        return Err(FilePlace::line(first_line).wrong(format!("no row is left; {rows} (--keep)")));
+        return Err(FilePlace::line(first_line).wrong(format!("no row is left; {rows} ({})", Setting::Keep)));
     }
     Ok(TextFile {
         rows: read,

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use ddl_core::Position;
+use ddl_core::{Position, Setting};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::format::choice::ColumnChoice;
@@ -25,7 +25,11 @@ const WHOLE_TIMES: &str = "the times are whole numbers: they are read as seconds
 const UNNAMED: &str = "the rows have no header: they are read as frame, pedestrian, x, y";
 const OF_ONE: &str = "; files of one pedestrian each, with y, x and frame (Grand Central), become one by: for f in \
     *.txt; do xargs -n3 < $f | awk -v p=${f%.txt} '{print $3, p, $2, $1}'; done > all.tracks";
-pub(super) const PIXELS: &str = "the positions are in pixels, and forecasts need metres: give --homography";
+
+/// What the reader of a file in pixels should know.
+pub(super) fn note_on_pixels() -> String {
+    format!("the positions are in pixels, and forecasts need metres: give {}", Setting::Homography)
+}
 
 /// The columns of a text, and what was found in its rows.
 #[derive(Debug)]
@@ -66,8 +70,11 @@ impl TrackColumns {
             Self::with_header(choice, comments, (first, line))?
         };
         if choice.is_mapped && columns.header.has_unit {
-            let problem = "the columns say that positions are in metres or parts of them, and the homography maps \
-                           pixels; give --homography none, or --unit px if they are pixels";
+            let (none, pixels) = (Setting::Homography.to("none"), Setting::Unit.to("px"));
+            let problem = format!(
+                "the columns say that positions are in metres or parts of them, and the homography maps pixels; give \
+                 {none}, or {pixels} if they are pixels"
+            );
             return Err(FilePlace::line(line).wrong(problem));
         }
         Ok((columns, is_header))
@@ -164,7 +171,7 @@ impl TrackColumns {
         }
         self.row_of(text, &fields, line).map_err(|wrong| {
             (self.header.time, self.assumed_unit) = before;
-            wrong.and(self.words_in(&fields))
+            wrong.and(&self.words_in(&fields))
         })
     }
 
@@ -223,7 +230,7 @@ impl TrackColumns {
                 return Ok(None);
             }
             let row = self.row_of(text, &fields, line);
-            read.extend(row.map_err(|wrong| wrong.and(self.words_in(&fields)))?);
+            read.extend(row.map_err(|wrong| wrong.and(&self.words_in(&fields)))?);
         }
         Ok(Some(read))
     }
@@ -243,7 +250,8 @@ impl TrackColumns {
             return Ok(());
         };
         let name = field::quoted(&self.names[*index]);
-        let problem = format!("rename the column {name} scene, or give --keep {name}=VALUE for one of them");
+        let keep = Setting::Keep.to(format!("{name}=VALUE"));
+        let problem = format!("rename the column {name} scene, or give {keep} for one of them");
         Err(FilePlace::field(line, index + 1).wrong(problem))
     }
 
@@ -285,7 +293,7 @@ impl TrackColumns {
         }
         match self.header.per_metre {
             None if self.is_mapped => {}
-            None => notes.push(PIXELS.to_owned()),
+            None => notes.push(note_on_pixels()),
             Some(per_metre) if self.note.is_none() => {
                 notes.extend(LengthUnit::words(per_metre).map(|unit| format!("the positions are in {unit}")));
             }
@@ -383,13 +391,14 @@ impl TrackColumns {
     }
 
     /// What else a line may be that is read as a row.
-    fn words_in(&self, fields: &[Cow<'_, str>]) -> &'static str {
+    fn words_in(&self, fields: &[Cow<'_, str>]) -> String {
         if fields.iter().eq(&self.names) {
-            "; the line repeats the names of the columns: delete it, or make a file of each part"
+            "; the line repeats the names of the columns: delete it, or make a file of each part".to_owned()
         } else if self.is_whole(fields) && !fields.iter().any(|field| self.is_number(field)) {
-            "; the line holds no number: delete it if it names units (--unit gives that of the positions)"
+            let unit = Setting::Unit;
+            format!("; the line holds no number: delete it if it names units ({unit} gives that of the positions)")
         } else {
-            ""
+            String::new()
         }
     }
 
@@ -423,10 +432,8 @@ impl TrackColumns {
                     self.names.join(", ")
                 )
             } else {
-                format!(
-                    "{name} changes from {known} to {found}: a file holds one recording; --keep {name}={known} reads \
-                     one of them"
-                )
+                let keep = Setting::Keep.to(format!("{name}={known}"));
+                format!("{name} changes from {known} to {found}: a file holds one recording; {keep} reads one of them")
             };
             return Err(FilePlace::field(line, *index + 1).wrong(problem));
         }
@@ -463,7 +470,8 @@ impl TrackColumns {
         value.map_or_else(String::new, |value| {
             let (names, value) = (self.quoted(apart.iter().copied()), field::quoted(value));
             let (all, name) = (first_of(&names), &names[0]);
-            format!("; if recordings are told apart by {all}, read one of them (--keep {name}={value})")
+            let keep = Setting::Keep.to(format!("{name}={value}"));
+            format!("; if recordings are told apart by {all}, read one of them ({keep})")
         })
     }
 

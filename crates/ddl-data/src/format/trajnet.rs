@@ -54,8 +54,8 @@ pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), Misread> 
         return Err(FilePlace::line(1).wrong(problem));
     }
     if rows.is_empty() && text.contains("\"prediction_number\"") {
-        let problem = "the tracks are forecasts (prediction_number), none is observed; score them with `ddl evaluate \
-                       --forecasts`";
+        let problem = "the tracks are forecasts (prediction_number), none is observed; give observed ones, or score \
+                       these as forecasts of another program";
         return Err(FilePlace::line(1).wrong(problem));
     }
     Ok((rows, others))

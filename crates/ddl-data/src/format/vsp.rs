@@ -7,7 +7,7 @@ use crate::format::field;
 use crate::format::place::{FilePlace, Misread};
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
-use crate::format::track_columns::PIXELS;
+use crate::format::track_columns::note_on_pixels;
 
 /// Frames a second of the films.
 const RATE: f64 = 25.0;
@@ -65,7 +65,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
     let (rows, lost) = rows_of(&splines)?;
     let left_out = (lost > 0)
         .then(|| format!("left out: {lost} splines of one control point, or parts between two more than 20 s apart"));
-    let pixels = (!choice.is_mapped).then(|| PIXELS.to_owned());
+    let pixels = (!choice.is_mapped).then(note_on_pixels);
     let notes = std::iter::once(NOTE.to_owned()).chain(pixels).chain(left_out);
     Ok(TextFile::without_columns(rows, notes, Some(RATE)))
 }
