@@ -55,11 +55,12 @@ pub(crate) struct ReadRecording {
 }
 
 fn columns(text: &str) -> Result<ColumnChoice, String> {
-    ColumnChoice::default().with_columns(text)
+    ColumnChoice::default().with_columns(text).map_err(|error| error.problem.to_string())
 }
 
 fn kept(text: &str) -> Result<String, String> {
-    ColumnChoice::default().keeping(text).map(|_| text.to_owned())
+    let kept = ColumnChoice::default().keeping(text);
+    kept.map(|_| text.to_owned()).map_err(|error| error.problem.to_string())
 }
 
 /// A recording, the name of its format and, of a log, the topic.
@@ -93,7 +94,7 @@ impl Units {
         }
         let columns = self.columns.as_ref().map(ToString::to_string);
         let given = [&columns, &self.keep, &self.unit].map(Option::as_deref);
-        ColumnChoice::given(given, is_mapped).map_err(anyhow::Error::msg)
+        Ok(ColumnChoice::given(given, is_mapped)?)
     }
 
     /// The option that gives the rate, with its value.

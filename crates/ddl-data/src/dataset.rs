@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::convention::Convention;
-use crate::error::DataError;
+use crate::file_error::DataError;
 use crate::fold::Fold;
 use crate::format::read_recording;
 use crate::recording::Recording;

@@ -3,7 +3,7 @@
 use ddl_core::Window;
 
 use crate::convention::{ConventionPlan, FoldPlan};
-use crate::error::DataError;
+use crate::file_error::DataError;
 use crate::recording::Recording;
 use crate::rule::WindowRule;
 

@@ -71,6 +71,7 @@ mod clock;
 mod convention;
 mod dataset;
 mod error;
+mod file_error;
 mod fold;
 mod format;
 mod future;
@@ -91,11 +92,12 @@ mod windows;
 pub use clock::{Clock, ClockError, FrameNumber, TimeUnit};
 pub use convention::Convention;
 pub use dataset::Dataset;
-pub use error::{DataError, FormatError, LiveError, RecordingError};
+pub use error::{LiveError, RecordingError};
+pub use file_error::DataError;
 pub use fold::{Fold, TrainingSplit};
 pub use format::{
-    ColumnChoice, Format, Frame, FrameReader, escaped, is_vehicle, parse_columns, parse_recording, read_recording,
-    write_recording,
+    ChoiceError, ColumnChoice, Fault, Field, Format, FormatError, Frame, FrameReader, Problem, TextLines, WrongValue,
+    escaped, is_vehicle, parse_columns, parse_recording, quoted, read_recording, write_recording,
 };
 pub use future::Futures;
 pub use homography::{Homography, HomographyError};

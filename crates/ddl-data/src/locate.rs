@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::convention::Convention;
-use crate::error::DataError;
+use crate::file_error::DataError;
 
 /// Environment variable that names the folder of the recordings.
 const DATASETS_VARIABLE: &str = "DDL_DATASETS";

@@ -22,6 +22,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use ddl_core::Window;
+use ddl_data::DataError;
 
 pub use error::ExternalError;
 pub use matched::{Coverage, Matched};
@@ -62,7 +63,7 @@ pub fn read(
     windows: &[Window],
     coverage: Coverage,
 ) -> Result<Matched, ExternalError> {
-    let file = File::open(path).map_err(|source| ExternalError::File { path: path.to_owned(), source })?;
+    let file = File::open(path).map_err(|source| DataError::Read { path: path.to_owned(), source })?;
     let origin = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let reader = BufReader::with_capacity(1 << 20, file);
@@ -83,7 +84,7 @@ pub fn read_from(
     coverage: Coverage,
 ) -> Result<Matched, ExternalError> {
     let mut expected = ExpectedForecasts::of(windows, origin)?;
-    let lines = lines::Lines::new(reader, origin);
+    let lines = lines::lines_of(reader, origin);
     match format {
         ExternalFormat::JsonLines => json_lines::read(lines, &mut expected),
         ExternalFormat::Table => table::read(lines, &mut expected),

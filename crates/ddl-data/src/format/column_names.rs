@@ -94,7 +94,7 @@ pub(super) enum LengthUnit {
 pub(super) type Rest = (usize, &'static str, i64);
 
 /// A column of a header.
-pub(super) struct Named {
+pub(super) struct NamedColumn {
     pub(super) index: usize,
     pub(super) role: Role,
     pub(super) time_unit: Option<TimeUnit>,
@@ -103,7 +103,7 @@ pub(super) struct Named {
 
 impl LengthUnit {
     /// The name of the unit of which so many make a metre; `None` for metres.
-    pub(super) fn words(per_metre: f64) -> Option<&'static str> {
+    pub(super) fn name_of(per_metre: f64) -> Option<&'static str> {
         let others = &LENGTH_UNITS[1..];
         let (names, _) = others.iter().find(|(_, unit)| *unit == Self::PerMetre(per_metre))?;
         names.split(' ').nth(1)
@@ -162,11 +162,11 @@ pub(super) fn role_of_unit(unit: TimeUnit) -> Option<String> {
 }
 
 /// The column of that name with a role that the user gives. The last word of its name may be a unit.
-pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
+pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> NamedColumn {
     let words = words(name);
     let last = words.last().map_or("", String::as_str);
     let of_time = [words.concat().as_str(), last].iter().find_map(|unit| unit_of(&TIME_UNITS, unit));
-    Named {
+    NamedColumn {
         index,
         role,
         time_unit: of_time.filter(|_| role == Role::Time),
@@ -185,7 +185,7 @@ pub(super) fn is_known(name: &str) -> bool {
 }
 
 /// The column of that name; `None` for an unknown one.
-pub(super) fn named(index: usize, name: &str) -> Option<Named> {
+pub(super) fn named(index: usize, name: &str) -> Option<NamedColumn> {
     let mut words = words(name);
     // `rostopic echo -p` writes the fields of a message as `field.pose.position.x`.
     if words.first().is_some_and(|word| word == "field") {

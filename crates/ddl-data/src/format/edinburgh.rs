@@ -3,8 +3,8 @@
 use ddl_core::Setting;
 
 use crate::format::choice::ColumnChoice;
+use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field;
-use crate::format::place::{FilePlace, Misread};
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 
@@ -22,7 +22,7 @@ pub(super) fn is_first(line: &str) -> bool {
     line.starts_with(TRACK) || line.starts_with(PROPERTIES)
 }
 
-pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misread> {
+pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
     let per_metre = if choice.is_mapped { 1.0 } else { PER_METRE };
     let (mut rows, mut repeated) = (Vec::new(), 0);
     for (line, text) in (1..).zip(text.lines()) {

@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use ddl_core::{Numbering, PedestrianId, PedestrianNames, Position, Setting};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
-use crate::error::DataError;
+use crate::file_error::DataError;
+use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field::PedestrianField;
-use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate};
 use crate::observation::Observation;
 use crate::observe::LONGEST_GAP;
@@ -44,7 +44,7 @@ pub(super) fn into_recording(
     advice_on_same: impl Fn([usize; 2]) -> String,
 ) -> Result<Recording, DataError> {
     let (restarts, unit) = (restarts(&rows), rows.first().and_then(|row| row.unit));
-    let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.in_file(origin))?;
+    let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.of(origin))?;
     let recording = Recording::in_usual_step(origin, observations);
     let mut recording = recording.map_err(|source| DataError::Recording { name: origin.to_owned(), source })?;
     recording.restarts = restarts;
@@ -56,7 +56,7 @@ fn observations(
     rows: Vec<TrackRow>,
     unit: Option<TimeUnit>,
     advice_on_same: impl Fn([usize; 2]) -> String,
-) -> Result<(Vec<Observation>, PedestrianNames), Misread> {
+) -> Result<(Vec<Observation>, PedestrianNames), FormatError> {
     if rows.is_empty() {
         return Err(FilePlace::line(1).wrong(EMPTY));
     }

@@ -3,8 +3,8 @@
 use ddl_core::{Position, between};
 
 use crate::format::choice::ColumnChoice;
+use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field;
-use crate::format::place::{FilePlace, Misread};
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 use crate::format::track_columns::note_on_pixels;
@@ -31,7 +31,7 @@ struct ControlPoint {
     line: usize,
 }
 
-pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misread> {
+pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
     let mut splines: Vec<(usize, usize, Vec<ControlPoint>)> = Vec::new();
     let mut promised = None;
     for (line, text) in (1..).zip(text.lines()) {
@@ -71,7 +71,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
 }
 
 /// The positions of all splines, and the number of parts that are left out.
-fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRow>, usize), Misread> {
+fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRow>, usize), FormatError> {
     let (mut rows, mut lost) = (Vec::new(), 0);
     for (id, (line, count, points)) in (1..).zip(splines) {
         if points.len() != *count {
@@ -87,7 +87,7 @@ fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRo
 }
 
 /// Adds the positions of a spline at the frames that are multiples of [`STEP`].
-fn along(id: i64, points: &[ControlPoint], rows: &mut Vec<TrackRow>) -> Result<(), Misread> {
+fn along(id: i64, points: &[ControlPoint], rows: &mut Vec<TrackRow>) -> Result<(), FormatError> {
     let begin = rows.len();
     for [before, after] in points.array_windows() {
         let apart = after.frame - before.frame;

@@ -1,12 +1,12 @@
 //! Forecasts in the order of the windows.
 
 use ddl_core::{Forecast, HORIZON, Position, Window};
+use ddl_data::Fault;
 use sha2::{Digest as _, Sha256};
 
 use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, Slot};
 use crate::external::hint::NAMED;
-use crate::external::lines::{whole_line, wrong};
 use crate::external::pedestrian_key::{last_observed, named};
 
 /// What to do if a file and the windows have different pedestrians.
@@ -77,7 +77,7 @@ impl ExpectedForecasts<'_> {
         let forecast_count = self.slots.iter().flatten().flatten().count();
         if self.forecasts == 0 {
             let problem = "the file holds no forecast; is it empty or truncated?";
-            return Err(wrong(&self.origin, 1, whole_line(problem)));
+            return Err(Fault::from(problem).in_line(&self.origin, 1).into());
         }
         let refused = match coverage {
             Coverage::Whole => self.unknown.count > 0,

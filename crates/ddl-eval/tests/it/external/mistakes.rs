@@ -102,7 +102,7 @@ fn text_that_is_not_utf8_is_refused_at_its_line() {
     let other: &[u8] = b"\n\xff";
     for (format, text, line) in [(ExternalFormat::JsonLines, &bytes[..], 4), (ExternalFormat::Table, other, 2)] {
         let error = external::read_from(text, "f", format, &windows(), Coverage::Whole);
-        let expected = format!("f, line {line}: the text is not UTF-8");
+        let expected = format!("f, line {line}: the text is not UTF-8; export the file as plain UTF-8 or ASCII text");
         assert_eq!(error.unwrap_err().to_string(), expected);
     }
 }
