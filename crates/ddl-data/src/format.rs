@@ -36,7 +36,6 @@ pub use fault::{Fault, Field, FormatError, Problem, WrongValue};
 pub use field::{escaped, quoted};
 pub use kind::Format;
 pub use lines::TextLines;
-pub use row_filter::is_vehicle;
 pub use stream::{Frame, FrameReader};
 pub use write::write_recording;
 

@@ -1,5 +1,6 @@
 //! What the names of columns say: their role and their unit.
 
+use crate::class::{is_one_of, name_words};
 use crate::clock::TimeUnit;
 
 /// What a column holds.
@@ -145,11 +146,6 @@ fn unit_of<T: Copy>(units: &[(&str, T)], name: &str) -> Option<T> {
     found.map(|(_, unit)| *unit)
 }
 
-/// Whether a word is one of these, separated by blanks.
-pub(super) fn is_one_of(words: &str, word: &str) -> bool {
-    words.split(' ').any(|one| one == word)
-}
-
 /// The unit of a role such as `time_ms`.
 pub(super) fn unit_of_role(role: &str) -> Option<TimeUnit> {
     unit_of(&TIME_UNITS, role.strip_prefix("time_")?)
@@ -163,7 +159,7 @@ pub(super) fn role_of_unit(unit: TimeUnit) -> Option<String> {
 
 /// The column of that name with a role that the user gives. The last word of its name may be a unit.
 pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> NamedColumn {
-    let words = words(name);
+    let words = name_words(name);
     let last = words.last().map_or("", String::as_str);
     let of_time = [words.concat().as_str(), last].iter().find_map(|unit| unit_of(&TIME_UNITS, unit));
     NamedColumn {
@@ -186,7 +182,7 @@ pub(super) fn is_known(name: &str) -> bool {
 
 /// The column of that name; `None` for an unknown one.
 pub(super) fn named(index: usize, name: &str) -> Option<NamedColumn> {
-    let mut words = words(name);
+    let mut words = name_words(name);
     // `rostopic echo -p` writes the fields of a message as `field.pose.position.x`.
     if words.first().is_some_and(|word| word == "field") {
         words.remove(0);
@@ -222,27 +218,7 @@ pub(super) fn count_columns<'a>(names: impl Iterator<Item = &'a str>) -> bool {
 
 /// Whether the last word of a name is a unit of time.
 pub(super) fn is_of_time(name: &str) -> bool {
-    let words = words(name);
+    let words = name_words(name);
     let unit = words.last().map_or("", String::as_str);
     unit_of(&TIME_UNITS, unit).is_some() || unit_of(&RESTS, unit).is_some()
-}
-
-/// The words of a name in small letters: `trackId`, `track_id` and `Track ID` have the words track and id.
-pub(super) fn words(name: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let mut was_small = false;
-    for letter in name.chars() {
-        let begins = letter.is_uppercase() && was_small;
-        if (begins || !letter.is_alphanumeric()) && words.last().is_some_and(|word| !word.is_empty()) {
-            words.push(String::new());
-        }
-        if letter.is_alphanumeric()
-            && let Some(word) = words.last_mut()
-        {
-            word.extend(letter.to_lowercase());
-        }
-        was_small = letter.is_lowercase();
-    }
-    words.retain(|word| !word.is_empty());
-    words
 }

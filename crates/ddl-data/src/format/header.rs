@@ -4,10 +4,11 @@ use std::borrow::Cow;
 
 use ddl_core::Setting;
 
+use crate::class::{is_one_of, name_words};
 use crate::clock::TimeUnit;
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{
-    LengthUnit, NamedColumn, Rest, Role, chosen_as, count_columns, is_known, is_one_of, named, rest_beside, words,
+    LengthUnit, NamedColumn, Rest, Role, chosen_as, count_columns, is_known, named, rest_beside,
 };
 use crate::format::fault::{Fault, Field};
 use crate::format::field::quoted;
@@ -89,7 +90,7 @@ impl ColumnRoles {
     /// The first field that is wrong, and everything that is wrong.
     pub(super) fn of_names(names: &[&str], choice: &ColumnChoice) -> Result<Self, Fault> {
         refuse_numbers(names)?;
-        let plain: Vec<String> = names.iter().map(|name| words(name).concat()).collect();
+        let plain: Vec<String> = names.iter().map(|name| name_words(name).concat()).collect();
         let mut roles = NamedColumns::of(names, &plain, choice).roles(choice)?;
         if let Some(rest) = rest_beside(&plain, roles.frame) {
             roles.time = TimeColumn::Known(Some(TimeUnit::Seconds));
@@ -154,7 +155,7 @@ impl ColumnRoles {
         let mut unread = self.unread.clone();
         if unread.len() > NAMED {
             let is_number = |index: &usize| fields[*index].parse::<f64>().is_ok();
-            unread.sort_by_key(|index| is_number(index) && !is_one_of(PARTS, &words(&names[*index]).concat()));
+            unread.sort_by_key(|index| is_number(index) && !is_one_of(PARTS, &name_words(&names[*index]).concat()));
         }
         unread
     }
@@ -436,7 +437,7 @@ fn column_of(role: &str, name: &str) -> String {
 
 /// Whether a column tells cameras apart, which a stream does by scenes.
 pub(super) fn is_camera(name: &str) -> bool {
-    is_one_of(CAMERAS, &words(name).concat())
+    is_one_of(CAMERAS, &name_words(name).concat())
 }
 
 /// The names, at most five of them.

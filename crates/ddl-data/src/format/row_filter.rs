@@ -5,20 +5,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use ddl_core::Setting;
 
-use crate::format::column_names::{is_one_of, words};
+use crate::class::{PEOPLE, has_word_of, is_one_of, is_vehicle, name_words};
 use crate::format::fault::Fault;
 use crate::format::field::quoted;
 use crate::format::header::{ColumnRoles, first_of};
 use crate::format::problem::value;
 
-/// Classes that are not people on foot. A row of one of them is left out.
-const VEHICLES: &str = "car cars veh vehicle truck trucks bus van trailer tram train bicycle bicyclist cyclist biker \
-                        bike motorcycle motorcyclist motorbike scooter skater cart vehicles wheeler robot ego";
-const PEOPLE: &str = "pedestrian pedestrians ped peds person persons people human";
 /// Words beside those of people that do not change what they are.
 const OF_PEOPLE: &str = "type class adult child moving standing sitting walking";
-/// First words of classes that deny people, as in `NonPedestrian`.
-const DENIALS: &str = "non not";
 /// Reasons to leave rows out that are counted, each for itself.
 const MOST_REASONS: usize = 20;
 /// Classes after which a stream tells no more of them.
@@ -75,7 +69,7 @@ impl RowFilter {
             if kept.map_or_else(|| is_vehicle(class), |kept| !class.eq_ignore_ascii_case(kept)) {
                 return Some(format!("of class {}", quoted(class)));
             }
-            if kept.is_none() && self.classes.len() < MOST_REASONS && !are_people(&words(class)) {
+            if kept.is_none() && self.classes.len() < MOST_REASONS && !are_people(class) {
                 self.classes.insert(quoted(class));
             }
         }
@@ -126,21 +120,9 @@ fn marked(roles: &ColumnRoles, names: &[String], fields: &[Cow<'_, str>]) -> Res
 }
 
 /// Whether a class names people on foot, and nothing else.
-fn are_people(words: &[String]) -> bool {
-    has_word_of(PEOPLE, words) && words.iter().all(|word| is_one_of(PEOPLE, word) || is_one_of(OF_PEOPLE, word))
-}
-
-/// Whether a class names something else than people on foot, as `car` and `vehicle.bicycle` do.
-pub fn is_vehicle(class: &str) -> bool {
-    let words = words(class);
-    let is_other = has_word_of(VEHICLES, &words) && !has_word_of(PEOPLE, &words);
-    let is_denied = words.first().is_some_and(|word| is_one_of(DENIALS, word))
-        && words.last().is_some_and(|word| is_one_of(PEOPLE, word));
-    is_other || is_denied || is_one_of(VEHICLES, &class.to_ascii_lowercase())
-}
-
-fn has_word_of(names: &str, words: &[String]) -> bool {
-    words.iter().any(|word| is_one_of(names, word))
+fn are_people(class: &str) -> bool {
+    let words = name_words(class);
+    has_word_of(PEOPLE, &words) && words.iter().all(|word| is_one_of(PEOPLE, word) || is_one_of(OF_PEOPLE, word))
 }
 
 fn is_marked(mark: &str) -> Option<bool> {

@@ -8,11 +8,12 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
+use crate::class::is_vehicle;
 use crate::clock::TimeUnit;
 use crate::format::fault::{FilePlace, FormatError, Problem};
 use crate::format::field::{self, PedestrianField};
 use crate::format::problem::when;
-use crate::format::row_filter::{RowFilter, UNTRACKED, is_vehicle};
+use crate::format::row_filter::{RowFilter, UNTRACKED};
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
