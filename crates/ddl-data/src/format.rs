@@ -16,6 +16,7 @@ mod lines;
 mod order;
 mod position_columns;
 mod problem;
+mod quoted;
 mod recognise;
 mod row_filter;
 mod row_reader;
@@ -33,9 +34,10 @@ use std::path::Path;
 
 pub use choice::{ChoiceError, ColumnChoice};
 pub use fault::{Fault, Field, FormatError, Problem, WrongValue};
-pub use field::{escaped, quoted};
+
 pub use kind::Format;
 pub use lines::TextLines;
+pub use quoted::{escaped, quoted};
 pub use stream::{Frame, FrameReader};
 pub use write::write_recording;
 
@@ -90,7 +92,7 @@ pub fn parse_columns(
     format: Format,
     choice: &ColumnChoice,
 ) -> Result<Recording, DataError> {
-    let read = rows_of(bytes, format, choice).map_err(|error| error.of(origin))?;
+    let read = rows_of(bytes, format, choice).map_err(|error| error.in_text(origin))?;
     let reader = read.reader.as_ref();
     let scene = read.rows.first().and_then(|row| row.scene.clone());
     let advice_on_same = |lines| TextFile::advice_on_same(reader, bytes, lines);

@@ -116,7 +116,7 @@ pub use format::{
     ChoiceError, ColumnChoice, Fault, Field, Format, FormatError, Frame, FrameReader, Problem, TextLines, WrongValue,
     escaped, parse_columns, parse_recording, quoted, read_recording, write_recording,
 };
-pub use future::Futures;
+pub use future::TruePaths;
 pub use homography::{Homography, HomographyError};
 pub use live::{Completeness, LiveTracks, checked_frame};
 #[cfg(feature = "files")]

@@ -8,7 +8,7 @@ use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, TIME_STEP, Win
 
 use crate::clock::{Clock, ClockError};
 use crate::error::LiveError;
-use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, Row};
+use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, TimedPosition};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -152,7 +152,7 @@ impl LiveTracks {
         Ok(Self::with_clock(Clock::with_frame_step(frame_step)?))
     }
 
-    pub(crate) fn of(recording: &Recording) -> Self {
+    pub(crate) fn of_recording(recording: &Recording) -> Self {
         Self {
             name: recording.shared_name(),
             names: recording.names().clone(),
@@ -286,7 +286,7 @@ impl LiveTracks {
                 Entry::Occupied(mut place) => {
                     let pedestrian = Arc::make_mut(place.get_mut());
                     pedestrian.last_row = tick;
-                    let row = Row { time, position };
+                    let row = TimedPosition { time, position };
                     let swap = exchanged.iter().find(|(other, _)| *other == id);
                     let misfit = if let Some((_, distance)) = swap {
                         pedestrian.track = ObservedTrack::beginning(time, position);

@@ -72,7 +72,7 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
         }
     }
     let (name, topic) = choose(topics, asked).map_err(|problem| problem.at(path.display()))?;
-    let words = topic.words(&name);
+    let words = topic.description(&name);
     if topic.rows.is_empty() {
         let keep = Setting::Keep.to("class=NAME");
         let problem = LogProblem::from(format!("{words}; no row is left, and {keep} chooses another class"));
@@ -131,7 +131,7 @@ impl Topic {
         Self { kind: format!("{} as {}", type_name(channel), channel.message_encoding), ..Self::default() }
     }
 
-    fn words(&self, name: &str) -> String {
+    fn description(&self, name: &str) -> String {
         let (kind, messages, frame_id) = (&self.kind, self.messages, self.frame_id.as_deref().unwrap_or_default());
         let logged = if self.is_logged == Some(true) { "of the log" } else { "of the messages" };
         let left_out = self.left_out.iter().map(|(what, count)| format!("; {count} rows left out: {what}"));

@@ -5,6 +5,7 @@ use ddl_core::Setting;
 use crate::format::choice::ColumnChoice;
 use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field;
+use crate::format::quoted::quoted;
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 
@@ -46,7 +47,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Forma
                 if values.is_empty() {
                     continue;
                 }
-                return Err(place.wrong(format!("expected x, y and frame, found {:?}", field::quoted(&point))));
+                return Err(place.wrong(format!("expected x, y and frame, found {:?}", quoted(&point))));
             };
             let frame = place.read(field::integer(frame, "frame"))?;
             let number = |text: &str, name: &str| field::coordinate(text, name, per_metre);

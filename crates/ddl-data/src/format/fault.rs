@@ -145,7 +145,7 @@ pub struct FormatError {
 
 impl FormatError {
     /// The error of a text with this name.
-    pub(super) fn of(self, origin: &str) -> Self {
+    pub(super) fn in_text(self, origin: &str) -> Self {
         Self { origin: origin.to_owned(), ..self }
     }
 

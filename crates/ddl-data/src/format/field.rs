@@ -9,9 +9,7 @@ use time::{OffsetDateTime, PrimitiveDateTime};
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::format::fault::Problem;
 use crate::format::problem::{not_a_time, not_finite, not_integer, value};
-
-/// Longest piece of a file that an error message quotes, in characters.
-const QUOTED: usize = 40;
+use crate::format::quoted::{escaped, quoted};
 
 /// Longest word that names a pedestrian, in bytes.
 const LONGEST_WORD: usize = 256;
@@ -171,28 +169,6 @@ pub(super) fn number(text: &str, name: &str) -> Result<(), Problem> {
     text.parse::<f64>().map(drop).map_err(|_| value(name, "a number", text))
 }
 
-/// A piece of a text of others for a message: 40 characters at most, without control characters.
-pub fn quoted(text: &str) -> String {
-    let (text, rest) = match text.char_indices().nth(QUOTED) {
-        Some((end, _)) => (&text[..end], "..."),
-        None => (text, ""),
-    };
-    escaped(text) + rest
-}
-
-/// A text of others with its control characters, which would act on terminals, as escapes.
-pub fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        if letter.is_control() {
-            escaped.extend(letter.escape_default());
-        } else {
-            escaped.push(letter);
-        }
-    }
-    escaped
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -223,6 +199,6 @@ mod tests {
             assert!(coordinate(text, "x", 1.0).is_err(), "{text}");
         }
         assert_eq!(coordinate("-1e7", "x", 1.0), Ok(-1e7));
-        assert_eq!(quoted(&"ä".repeat(500)).chars().count(), QUOTED + 3);
+        assert_eq!(quoted(&"ä".repeat(500)).chars().count(), 43);
     }
 }

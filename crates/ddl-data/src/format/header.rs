@@ -11,9 +11,9 @@ use crate::format::column_names::{
     LengthUnit, NamedColumn, Rest, Role, chosen_as, count_columns, is_known, named, rest_beside,
 };
 use crate::format::fault::{Fault, Field};
-use crate::format::field::quoted;
 use crate::format::layouts::FileLayout;
 use crate::format::position_columns::PositionColumns;
+use crate::format::quoted::quoted;
 
 /// Names of columns that tell the recordings of one file apart.
 const GROUPS: &str = "recording recordingid video videoid videoname clip clipid sequenceid sequencename session \

@@ -7,7 +7,7 @@ use ddl_core::Setting;
 
 use crate::clock::{Clock, TimeUnit};
 use crate::format::fault::Problem;
-use crate::format::field::quoted;
+use crate::format::quoted::quoted;
 
 pub(super) const EMPTY: &str = "the file holds no observation; is it empty or cut off?";
 pub(super) const MIXED_TIMES: &str = "the time is of another kind than that of the first row; give all rows frame \

@@ -7,9 +7,9 @@ use ddl_core::Setting;
 
 use crate::class::{PEOPLE, has_word_of, is_one_of, is_vehicle, name_words};
 use crate::format::fault::Fault;
-use crate::format::field::quoted;
 use crate::format::header::{ColumnRoles, first_of};
 use crate::format::problem::value;
+use crate::format::quoted::quoted;
 
 /// Words beside those of people that do not change what they are.
 const OF_PEOPLE: &str = "type class adult child moving standing sitting walking";

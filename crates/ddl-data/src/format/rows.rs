@@ -44,7 +44,7 @@ pub(super) fn into_recording(
     advice_on_same: impl Fn([usize; 2]) -> String,
 ) -> Result<Recording, DataError> {
     let (restarts, unit) = (restarts(&rows), rows.first().and_then(|row| row.unit));
-    let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.of(origin))?;
+    let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.in_text(origin))?;
     let recording = Recording::in_usual_step(origin, observations);
     let mut recording = recording.map_err(|source| DataError::Recording { name: origin.to_owned(), source })?;
     recording.restarts = restarts;

@@ -245,7 +245,8 @@ impl<R: BufRead> FrameReader<R> {
             }
             None => {
                 let comments = std::mem::take(&mut self.comments);
-                let (kind, is_header) = self.kind_of(&comments, text).map_err(|e| e.of(self.lines.origin()))?;
+                let (kind, is_header) =
+                    self.kind_of(&comments, text).map_err(|error| error.in_text(self.lines.origin()))?;
                 self.kind = Some(kind);
                 return if is_header { Ok(None) } else { self.row(text) };
             }

@@ -13,6 +13,7 @@ use crate::clock::TimeUnit;
 use crate::format::fault::{FilePlace, FormatError, Problem};
 use crate::format::field::{self, PedestrianField};
 use crate::format::problem::when;
+use crate::format::quoted::quoted;
 use crate::format::row_filter::{RowFilter, UNTRACKED};
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
@@ -78,7 +79,7 @@ impl OtherLines {
             return Ok(());
         };
         let rate = fps.as_f64().filter(|fps| fps.is_finite() && *fps > 0.0);
-        let found = || field::quoted(&fps.to_string());
+        let found = || quoted(&fps.to_string());
         let rate =
             rate.ok_or_else(|| Problem::value("scene.fps", "a number above 0, the frames in a second", found()))?;
         match self.frames_a_second {
@@ -139,7 +140,7 @@ impl TrackFields {
             return Some(UNTRACKED.to_owned());
         }
         let class = self.class.as_ref()?.as_str().filter(|class| is_vehicle(class))?;
-        Some(format!("of class {}", field::quoted(class)))
+        Some(format!("of class {}", quoted(class)))
     }
 }
 
@@ -155,7 +156,7 @@ pub(super) fn observation(text: &str, line: usize, others: &mut OtherLines) -> R
     let wrong = |error: serde_json::Error| not_one_object(&error.to_string());
     if !text.trim_start().starts_with('{') {
         let other: Value = serde_json::from_str(text).map_err(wrong)?;
-        return Err(not_one_object(&format!("found {}", field::quoted(&other.to_string()))));
+        return Err(not_one_object(&format!("found {}", quoted(&other.to_string()))));
     }
     let parts: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
     // A scene that is not an object shows that the file is of another kind.
@@ -192,7 +193,7 @@ pub(super) fn observation(text: &str, line: usize, others: &mut OtherLines) -> R
         None => None,
         Some(Value::String(name)) => Some(SceneName::new(&name).map_err(|error| error.to_string())?),
         Some(other) => {
-            let found = field::quoted(&other.to_string());
+            let found = quoted(&other.to_string());
             return Err(Problem::value("track.scene", "a text, such as \"hall\"", found));
         }
     };
@@ -227,7 +228,7 @@ fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str
         return Ok(None);
     };
     if !text.starts_with('{') {
-        return Err(Problem::value(name, "a JSON object", field::quoted(text)));
+        return Err(Problem::value(name, "a JSON object", quoted(text)));
     }
     let fields = serde_json::from_str(text);
     fields.map(Some).map_err(|error| not_one_object(&format!("{name}: {error}")))

@@ -6,15 +6,15 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
-use crate::observe::estimate::Observed;
-use crate::observe::{ObservedTrack, RecordingNoise, Row};
+use crate::observe::estimate::ObservedPositions;
+use crate::observe::{ObservedTrack, RecordingNoise, TimedPosition};
 
-fn observed(rows: &[(f64, Position)], time: f64) -> Observed {
+fn observed(rows: &[(f64, Position)], time: f64) -> ObservedPositions {
     let mut noise = RecordingNoise::default();
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
         track.forget_before(time, 0.4);
-        track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
+        track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
     }
     track.observed(time, 0.4, 1.0, &noise).unwrap()
 }
@@ -45,7 +45,7 @@ fn noise_is_measured() {
             let rows = noisy(&walk((0..30).map(|k| 0.1 * f64::from(k))), added, seed);
             let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
             for &(time, position) in &rows[1..] {
-                track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
+                track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
             }
         }
         assert!(measured.contains(&noise.metres()), "{added}: {}", noise.metres());
@@ -88,7 +88,7 @@ fn the_rows_that_are_kept_are_bounded() {
     let mut noise = RecordingNoise::default();
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
-        track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
+        track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
         track.forget_before(time, 0.4);
         assert!(track.rows.len() <= 2300, "{}", track.rows.len());
         let observed = track.observed(time, 0.4, 1.0, &noise);

@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::observation::Observation;
 use crate::simulate::force::{self, BODY, WalkingMotion};
-use crate::simulate::layout::{Leg, SceneLayout};
+use crate::simulate::layout::{RouteLeg, SceneLayout};
 use crate::simulate::pedestrian::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
 use crate::simulate::population::{self, Party};
 use crate::simulate::vector::{add, norm, scale, sub, unit};
@@ -26,7 +26,7 @@ const ENTRY_CLEARANCE: f64 = 0.7;
 pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Vec<Observation> {
     let end = WARM_UP + steps as f64 * TIME_STEP;
     let parties = population::draw(layout, end, rng);
-    let mut engine = Engine { layout, parties, waiting: Vec::new(), pedestrians: Vec::new(), next: 0, last_id: 0 };
+    let mut engine = CrowdEngine { layout, parties, waiting: Vec::new(), pedestrians: Vec::new(), next: 0, last_id: 0 };
     let mut observations = Vec::new();
     let warm_up = (WARM_UP / DT).round() as i64;
     for tick in 0..warm_up + steps * SUBSTEPS {
@@ -42,7 +42,7 @@ pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Vec
     observations
 }
 
-struct Engine<'a> {
+struct CrowdEngine<'a> {
     layout: &'a SceneLayout,
     parties: Vec<Party>,
     /// Indices of the parties that are due but found their entry occupied.
@@ -52,7 +52,7 @@ struct Engine<'a> {
     last_id: i64,
 }
 
-impl Engine<'_> {
+impl CrowdEngine<'_> {
     fn admit(&mut self, time: f64) {
         while self.parties.get(self.next).is_some_and(|party| party.time <= time) {
             self.waiting.push(self.next);
@@ -138,7 +138,7 @@ impl Engine<'_> {
         centre = scale(centre, 1.0 / f64::from(size));
         let party = &self.parties[pedestrian.party];
         let legs = &self.layout.routes[party.route].legs;
-        let standing = matches!(legs[pedestrian.leg], Leg::Stand(_)) && pedestrian.is_within(ARRIVED);
+        let standing = matches!(legs[pedestrian.leg], RouteLeg::Stand(_)) && pedestrian.is_within(ARRIVED);
         if size > 1 && !standing {
             total = add(total, force::cohesion(me, centre, party.members.len()));
         }

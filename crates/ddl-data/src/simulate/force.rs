@@ -2,7 +2,7 @@
 
 use ddl_core::Position;
 
-use crate::simulate::obstacle::{Line, Pillar};
+use crate::simulate::obstacle::{Pillar, Segment};
 use crate::simulate::vector::{add, cross, dot, left, norm, scale, sub, unit};
 
 /// Radius of a body (m).
@@ -82,7 +82,7 @@ pub(super) fn pillar(pedestrian: WalkingMotion, pillar: &Pillar) -> Position {
     stranger(pedestrian, still, pillar.radius)
 }
 
-pub(super) fn wall(pedestrian: WalkingMotion, wall: &Line) -> Position {
+pub(super) fn wall(pedestrian: WalkingMotion, wall: &Segment) -> Position {
     let away = sub(pedestrian.position, wall.nearest(pedestrian.position));
     let gap = norm(away) - BODY;
     scale(unit(away), WALL_STRENGTH * (-gap.max(0.0) / WALL_REACH).exp())

@@ -6,7 +6,7 @@ use crate::simulate::vector::{add, dot, left, norm, scale, sub, unit};
 
 /// A straight line between two points (m): a wall without thickness, or a gate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Line {
+pub(super) struct Segment {
     pub(super) a: Position,
     pub(super) b: Position,
 }
@@ -20,7 +20,7 @@ pub(super) struct Pillar {
     pub(super) radius: f64,
 }
 
-impl Line {
+impl Segment {
     pub(super) const fn new(a: Position, b: Position) -> Self {
         Self { a, b }
     }

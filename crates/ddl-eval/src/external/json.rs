@@ -22,7 +22,7 @@ impl TryFrom<Number> for Whole {
     type Error = &'static str;
 
     fn try_from(number: Number) -> Result<Self, Self::Error> {
-        let whole = number.as_i64().or_else(|| lines::whole(number.as_f64()?));
+        let whole = number.as_i64().or_else(|| lines::whole_number(number.as_f64()?));
         whole.map(Self).ok_or("no whole number")
     }
 }
@@ -34,7 +34,7 @@ enum Name {
     Word(String),
 }
 
-pub(super) fn whole<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error> {
+pub(super) fn whole_number<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error> {
     Whole::deserialize(field).map(|Whole(number)| number)
 }
 

@@ -18,7 +18,7 @@ use crate::protocol::Protocol;
 #[derive(Debug, Deserialize)]
 struct JsonForecast {
     recording: Option<String>,
-    #[serde(deserialize_with = "json::whole")]
+    #[serde(deserialize_with = "json::whole_number")]
     observed_until: i64,
     #[serde(deserialize_with = "json::pedestrian")]
     pedestrian: PedestrianName,

@@ -24,7 +24,7 @@ pub(super) fn wrong_length(found: usize) -> String {
     format!("{found} positions; a forecast has {HORIZON}, 0.4 s apart, after the last observed frame")
 }
 
-pub(super) fn whole(number: f64) -> Option<i64> {
+pub(super) fn whole_number(number: f64) -> Option<i64> {
     (number.fract() == 0.0 && number.abs() < FRAME_LIMIT as f64).then_some(number as i64)
 }
 

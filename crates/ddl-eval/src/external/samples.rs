@@ -27,7 +27,7 @@ use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
 use crate::external::lines::{lines_of, within_bounds, wrong_length};
 use crate::external::matched::{Coverage, Matched};
 use crate::external::pedestrian_key::{PedestrianKey, frames_ahead, last_observed, wrong_frames};
-use crate::external::table::{finite, whole};
+use crate::external::table::{finite, whole_number};
 use crate::protocol::Protocol;
 
 /// Writes the observations, true futures and forecasts of windows as sample files into a new folder METHOD.
@@ -115,7 +115,7 @@ pub fn read_samples(folder: &Path, windows: &[Window], coverage: Coverage) -> Re
 }
 
 /// A future of a window: the pedestrians, each with its first line, its frames and positions.
-type Sample = BTreeMap<PedestrianName, (usize, Vec<i64>, Vec<Position>)>;
+type SampleFile = BTreeMap<PedestrianName, (usize, Vec<i64>, Vec<Position>)>;
 
 fn read_window(
     expected: &mut ExpectedForecasts<'_>,
@@ -156,9 +156,9 @@ fn read_window(
     Ok(())
 }
 
-fn read_sample(file: &Path, origin: &str) -> Result<Sample, ExternalError> {
+fn read_sample(file: &Path, origin: &str) -> Result<SampleFile, ExternalError> {
     let reader = BufReader::new(File::open(file).map_err(|source| of_file(file, source))?);
-    let (mut lines, mut sample) = (lines_of(reader, origin), Sample::new());
+    let (mut lines, mut sample) = (lines_of(reader, origin), SampleFile::new());
     let mut last = None;
     while let Some(text) = lines.next_filled()? {
         let row = row(text);
@@ -182,8 +182,8 @@ fn row(text: &str) -> Result<(PedestrianName, i64, Position), Fault> {
     };
     let position = [finite(x, "x")?, finite(y, "y")?];
     within_bounds(position, || "x, y".to_owned())?;
-    let pedestrian = PedestrianName::Number(whole(pedestrian, "pedestrian")?);
-    Ok((pedestrian, whole(frame, "frame")?, position))
+    let pedestrian = PedestrianName::Number(whole_number(pedestrian, "pedestrian")?);
+    Ok((pedestrian, whole_number(frame, "frame")?, position))
 }
 
 /// The files `sample_000.txt` ... of a window, of which none is left out.

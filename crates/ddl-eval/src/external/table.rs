@@ -101,12 +101,12 @@ impl TableColumns {
         let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| fields.get(place));
         let who = PedestrianKey {
             recording: self.recording.map(|place| fields.get(place)).filter(|name| !name.is_empty()).map(str::to_owned),
-            observed_until: whole(observed_until, REQUIRED[0])?,
+            observed_until: whole_number(observed_until, REQUIRED[0])?,
             pedestrian: name(pedestrian)?,
         };
         let hypothesis = match self.hypothesis {
             None => 0,
-            Some(place) => whole(fields.get(place), "hypothesis")?,
+            Some(place) => whole_number(fields.get(place), "hypothesis")?,
         };
         let weight = match self.weight {
             None => None,
@@ -114,7 +114,7 @@ impl TableColumns {
         };
         let position = [finite(x, REQUIRED[3])?, finite(y, REQUIRED[4])?];
         within_bounds(position, || "x, y".to_owned())?;
-        Ok(TablePosition { who, hypothesis, weight, frame: whole(frame, REQUIRED[2])?, position })
+        Ok(TablePosition { who, hypothesis, weight, frame: whole_number(frame, REQUIRED[2])?, position })
     }
 }
 
@@ -202,9 +202,9 @@ impl PedestrianRows {
     }
 }
 
-pub(super) fn whole(text: &str, name: &'static str) -> Result<i64, Fault> {
+pub(super) fn whole_number(text: &str, name: &'static str) -> Result<i64, Fault> {
     let number = text.parse().ok();
-    let number = number.or_else(|| lines::whole(text.parse().ok()?));
+    let number = number.or_else(|| lines::whole_number(text.parse().ok()?));
     number.ok_or_else(|| Fault::named(name, format!("must be a whole number, found {:?}", quoted(text))))
 }
 

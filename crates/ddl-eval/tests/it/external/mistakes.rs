@@ -2,7 +2,7 @@
 
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 
-use super::files::{HEADER, complaint, hypothesis, line, rows, whole, windows};
+use super::files::{HEADER, complaint, hypothesis, line, rows, whole_file, windows};
 
 const CASES: &str = include_str!("mistakes.txt");
 
@@ -97,7 +97,7 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
 
 #[test]
 fn text_that_is_not_utf8_is_refused_at_its_line() {
-    let mut bytes = whole().into_bytes();
+    let mut bytes = whole_file().into_bytes();
     bytes.extend(b"\xff\xfe\n");
     let other: &[u8] = b"\n\xff";
     for (format, text, line) in [(ExternalFormat::JsonLines, &bytes[..], 4), (ExternalFormat::Table, other, 2)] {
