@@ -162,13 +162,10 @@ impl Clock {
     /// # Errors
     /// [`ClockError::Frame`] for a frame number that is too large to be divided.
     pub fn tick(self, frame: i64) -> Result<i64, ClockError> {
-        let Count::Frames { ticks } = self.count else {
-            return Ok(frame);
-        };
+        let Count::Frames { ticks } = self.count else { return Ok(frame) };
         let tick = frame.checked_mul(ticks).filter(|tick| is_frame(*tick));
         // A number that needs no division is checked where it is used.
-        let tick = tick.or((ticks == 1).then_some(frame));
-        tick.ok_or(ClockError::Frame { frame, ticks })
+        tick.or((ticks == 1).then_some(frame)).ok_or(ClockError::Frame { frame, ticks })
     }
 
     /// Microseconds at a tick: those of time stamps or, of frames, since frame 0.

@@ -138,8 +138,7 @@ impl<'a> Fold<'a> {
                 }
             }
         }
-        let set_apart = self.set_apart.iter().flat_map(|r| r.windows(rule));
-        split.validation.extend(set_apart);
+        split.validation.extend(self.set_apart.iter().flat_map(|r| r.windows(rule)));
         split
     }
 }

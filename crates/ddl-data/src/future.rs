@@ -61,11 +61,8 @@ pub(crate) fn position_at(track: &[&Observation], tick: i64, step: i64) -> Optio
     if off(&nearest) as f64 <= ON_STEP * step as f64 {
         return Some(nearest.position);
     }
-    let [Some(before), Some(after)] = rows else {
-        return None;
-    };
+    let [Some(before), Some(after)] = rows else { return None };
     let apart = (after.frame - before.frame) as f64;
-    let share = (tick - before.frame) as f64 / apart;
-    let between = between(before.position, after.position, share);
+    let between = between(before.position, after.position, (tick - before.frame) as f64 / apart);
     (apart * TIME_STEP <= JOINED * step as f64).then_some(between)
 }

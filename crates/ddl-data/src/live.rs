@@ -243,8 +243,7 @@ impl LiveTracks {
 
     /// Whether the last row of a pedestrian was left out.
     pub fn has_left_out(&self, id: PedestrianId) -> bool {
-        let pedestrian = self.pedestrians.get(&id);
-        pedestrian.is_some_and(|one| one.track.last_time() < one.last_row as f64)
+        self.pedestrians.get(&id).is_some_and(|one| one.track.last_time() < one.last_row as f64)
     }
 
     /// The rows that the last frame showed to be wrong, and the tracks that it began anew.
@@ -357,8 +356,7 @@ impl LiveTracks {
     /// Decides whether there is a window at this tick, which has so many rows.
     fn decide_moment(&mut self, tick: i64, rows: usize) {
         let step = self.clock.frame_step();
-        let recent = self.pedestrians.values().filter(|pedestrian| tick - pedestrian.last_row < step);
-        if recent.count() > 1 {
+        if self.pedestrians.values().filter(|pedestrian| tick - pedestrian.last_row < step).count() > 1 {
             self.frames_of_several += u64::from(rows > 1);
             self.frames_of_one += u64::from(rows == 1);
         }

@@ -111,8 +111,7 @@ impl Recording {
     pub(crate) fn differences(&self) -> Vec<i64> {
         let mut last_frames = HashMap::new();
         let rows = self.observations.iter();
-        let differences = rows.filter_map(|row| Some(row.frame - last_frames.insert(row.pedestrian, row.frame)?));
-        differences.collect()
+        rows.filter_map(|row| Some(row.frame - last_frames.insert(row.pedestrian, row.frame)?)).collect()
     }
 
     /// Median difference of frame numbers between successive rows of a pedestrian; `None` if no pedestrian has two.

@@ -43,8 +43,7 @@ impl Recording {
     pub fn observe_each(&self, mut tracks: LiveTracks, mut each: impl FnMut(Window)) -> ObservedRecording {
         let mut misfits = Vec::new();
         for &frame in self.frames() {
-            let rows = self.at(frame).iter();
-            let rows = rows.map(|row| (row.pedestrian, row.position));
+            let rows = self.at(frame).iter().map(|row| (row.pedestrian, row.position));
             // Cannot fail: the invariants of a recording exclude every error of live tracks.
             if let Ok(Some(window)) = tracks.push(frame, rows) {
                 each(window);

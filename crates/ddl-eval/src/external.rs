@@ -66,8 +66,7 @@ pub fn read(
     let file = File::open(path).map_err(|source| DataError::Read { path: path.to_owned(), source })?;
     let origin = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let reader = BufReader::with_capacity(1 << 20, file);
-    let mut matched = read_from(reader, &origin, format, windows, coverage)?;
+    let mut matched = read_from(BufReader::with_capacity(1 << 20, file), &origin, format, windows, coverage)?;
     matched.file = name.into_owned();
     Ok(matched)
 }

@@ -98,6 +98,5 @@ fn index_of(window: &Window, pedestrian: PedestrianId) -> Option<usize> {
 }
 
 pub(crate) fn indices_in_full(window: &Window, full: &Window) -> Option<Vec<usize>> {
-    let pedestrians = window.pedestrians().iter();
-    pedestrians.map(|&p| index_of(full, p)).collect()
+    window.pedestrians().iter().map(|&p| index_of(full, p)).collect()
 }

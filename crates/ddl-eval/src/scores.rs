@@ -158,8 +158,7 @@ impl Scores {
             scenes.iter().map(sum).sum::<f64>() / total
         };
         let share = |holds: fn(&PedestrianScores) -> bool| {
-            let scored = scenes.iter().flat_map(|s| &s.pedestrians);
-            scored.filter(|pedestrian| holds(pedestrian)).count() as f64 / total
+            scenes.iter().flat_map(|s| &s.pedestrians).filter(|pedestrian| holds(pedestrian)).count() as f64 / total
         };
         let each = || scenes.iter().flat_map(|s| &s.pedestrians);
         let futures = scenes.iter().map(|s| (s.pedestrians.len(), s.joint, s.futures.as_ref()));
@@ -227,8 +226,7 @@ fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> PlaneCovariance 
         let covariances = s.pedestrians.iter().filter_map(|w| w.distribution);
         covariances.fold(PlaneCovariance::default(), |sum, d| sum.plus(d.covariance))
     };
-    let sum = scenes.iter().map(of_scene);
-    sum.fold(PlaneCovariance::default(), PlaneCovariance::plus).scaled(1.0 / pedestrians)
+    scenes.iter().map(of_scene).fold(PlaneCovariance::default(), PlaneCovariance::plus).scaled(1.0 / pedestrians)
 }
 
 fn check_alike(window: &Window, forecast: &Forecast, first: &Forecast) -> Result<(), EvaluationError> {

@@ -66,8 +66,7 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         let class = |result: &Value| result.pointer("/hypothesis/class_id").filter(|class| !class.is_null()).map(text);
         let score = |result: &&Value| result["hypothesis"]["score"].as_f64().unwrap_or(0.0);
-        let results = item["results"].as_array().into_iter().flatten();
-        let likeliest = results.max_by(|a, b| score(a).total_cmp(&score(b)));
+        let likeliest = item["results"].as_array().into_iter().flatten().max_by(|a, b| score(a).total_cmp(&score(b)));
         Some(SeenPedestrian {
             name: name.map(text)?,
             class: likeliest.and_then(class).unwrap_or_default(),
@@ -84,15 +83,12 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
     let nanoseconds = part_of(stamp, &["nanosec", "nsec", "nsecs"])?;
     let microseconds = seconds.saturating_mul(1_000_000).saturating_add(nanoseconds / 1000);
     let header = Header { stamp: Time::of_microseconds(microseconds), frame_id: frame_id(&message) };
-    let time = (microseconds != 0).then_some(microseconds);
-    Ok((time, Observed::new(header, pedestrians)))
+    Ok(((microseconds != 0).then_some(microseconds), Observed::new(header, pedestrians)))
 }
 
 /// The whole number with one of these names, which may be a text as protobuf writes it; 0 without any.
 fn part_of(stamp: &Value, names: &[&str]) -> Result<i64, LogProblem> {
-    let Some((name, value)) = names.iter().find_map(|name| Some((name, stamp.get(name)?))) else {
-        return Ok(0);
-    };
+    let Some((name, value)) = names.iter().find_map(|name| Some((name, stamp.get(name)?))) else { return Ok(0) };
     let of_text = value.as_str().and_then(|text| text.parse().ok());
     let of_float = value.as_f64().filter(|number| number.fract() == 0.0);
     let number = value.as_i64().or(of_text).or(of_float.map(|number| number as i64));

@@ -57,8 +57,7 @@ impl Messages {
                 match self.reader.next_event() {
                     None | Some(Ok(LinearReadEvent::Record { opcode: op::DATA_END, .. })) => return Ok(None),
                     Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
-                        let buffer = self.reader.insert(wanted.min(AT_ONCE));
-                        match self.source.read(buffer) {
+                        match self.source.read(self.reader.insert(wanted.min(AT_ONCE))) {
                             Err(error) if error.kind() == ErrorKind::Interrupted => {}
                             read => self.reader.notify_read(read?),
                         }
@@ -132,9 +131,7 @@ fn counted(data: &[u8], start: usize, most: usize) -> Option<Vec<&[u8]>> {
 /// The records of a chunk.
 fn unpacked(chunk: &[u8]) -> Result<Vec<u8>, LogProblem> {
     let parsed = counted(chunk, CHUNK_HEAD, 1).and_then(|_| parse_record(op::CHUNK, chunk).ok());
-    let Some(Record::Chunk { header, data }) = parsed else {
-        return Err("a chunk is shorter than it says".into());
-    };
+    let Some(Record::Chunk { header, data }) = parsed else { return Err("a chunk is shorter than it says".into()) };
     let packed: Box<dyn Read> = match header.compression.as_str() {
         "" => Box::new(&*data),
         "zstd" => Box::new(ruzstd::decoding::StreamingDecoder::new(&*data).map_err(LogProblem::of_chunk)?),
@@ -142,8 +139,7 @@ fn unpacked(chunk: &[u8]) -> Result<Vec<u8>, LogProblem> {
         other => return Err(format!("chunks are compressed by {other:?}; zstd and lz4 are read").into()),
     };
     let mut records = Vec::new();
-    let read = packed.take(MOST as u64).read_to_end(&mut records);
-    read.map_err(LogProblem::of_chunk)?;
+    packed.take(MOST as u64).read_to_end(&mut records).map_err(LogProblem::of_chunk)?;
     let crc = header.uncompressed_crc;
     if records.len() as u64 != header.uncompressed_size || (crc != 0 && crc32fast::hash(&records) != crc) {
         return Err(LogProblem::Chunk(format!("its checksum or size is wrong, or it is larger than {MOST} bytes")));

@@ -58,8 +58,7 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
             topic.messages += 1;
             if asked.is_none_or(|asked| asked == channel.topic) {
                 let decoded = decode(&message);
-                let added = decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep));
-                added.map_err(|problem| {
+                decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep)).map_err(|problem| {
                     let hint = || format!("{problem}; {} reads another topic", Setting::Topic).into();
                     let problem = if asked.is_none() { hint() } else { problem };
                     let (topic, number) = (&channel.topic, message.sequence);
@@ -149,9 +148,7 @@ impl Topic {
 
     /// Adds the rows of a message.
     fn add(&mut self, decoded: Option<Decoded>, log_time: u64, keep: impl Fn(&str) -> bool) -> Result<(), LogProblem> {
-        let Some((time, mut observed)) = decoded else {
-            return Ok(());
-        };
+        let Some((time, mut observed)) = decoded else { return Ok(()) };
         if *self.is_logged.get_or_insert(time.is_none()) != time.is_none() {
             return Err("header.stamp is 0 in some messages and a time in others".into());
         }

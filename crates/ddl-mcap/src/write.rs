@@ -115,6 +115,5 @@ impl<W: Write> ForecastLog<W> {
 }
 
 fn nanoseconds(microseconds: i64) -> Result<u64, LogError> {
-    let time = u64::try_from(microseconds).ok().and_then(|time| time.checked_mul(1000));
-    time.ok_or(LogError::Early { microseconds })
+    u64::try_from(microseconds).ok().and_then(|time| time.checked_mul(1000)).ok_or(LogError::Early { microseconds })
 }

@@ -178,8 +178,7 @@ fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&LoggedMessag
         let (channel, times) = (&message.channel, [message.log_time, message.publish_time]);
         let schema = channel.schema.as_ref().ok_or("no schema")?;
         let kind = json!([channel.topic, schema.name, schema.encoding, channel.message_encoding]);
-        let found = json!([kind, message.sequence, times, message.data]);
-        assert_eq!(found, *expected);
+        assert_eq!(json!([kind, message.sequence, times, message.data]), *expected);
     }
     assert_eq!(MessageStream::new(&file)?.count(), expected.len());
     Ok(())

@@ -142,8 +142,7 @@ pub(super) fn role_names() -> impl Iterator<Item = (Role, &'static str)> {
 }
 
 fn unit_of<T: Copy>(units: &[(&str, T)], name: &str) -> Option<T> {
-    let found = units.iter().find(|(names, _)| is_one_of(names, name));
-    found.map(|(_, unit)| *unit)
+    units.iter().find(|(names, _)| is_one_of(names, name)).map(|(_, unit)| *unit)
 }
 
 /// The unit of a role such as `time_ms`.
@@ -194,8 +193,7 @@ pub(super) fn named(index: usize, name: &str) -> Option<NamedColumn> {
         Some(*role)
     };
     let whole = role(&words);
-    let found = whole.or_else(|| role(words.split_last()?.1))?;
-    let named = chosen_as(found, index, name);
+    let named = chosen_as(whole.or_else(|| role(words.split_last()?.1))?, index, name);
     // A word beside the name of a role is its unit.
     (whole.is_some() || named.time_unit.is_some() || named.length.is_some()).then_some(named)
 }
@@ -218,7 +216,5 @@ pub(super) fn count_columns<'a>(names: impl Iterator<Item = &'a str>) -> bool {
 
 /// Whether the last word of a name is a unit of time.
 pub(super) fn is_of_time(name: &str) -> bool {
-    let words = name_words(name);
-    let unit = words.last().map_or("", String::as_str);
-    unit_of(&TIME_UNITS, unit).is_some() || unit_of(&RESTS, unit).is_some()
+    name_words(name).last().is_some_and(|unit| unit_of(&TIME_UNITS, unit).is_some() || unit_of(&RESTS, unit).is_some())
 }

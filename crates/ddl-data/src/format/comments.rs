@@ -58,8 +58,7 @@ pub(super) fn names_in_comments<'a>(
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         names.len() < count && ColumnRoles::of_names(&names, choice).is_ok()
     };
-    let exact = names.iter().rev().find(|names| names.len() == count);
-    exact.or_else(|| names.iter().rev().find(is_header)).cloned()
+    names.iter().rev().find(|names| names.len() == count).or_else(|| names.iter().rev().find(is_header)).cloned()
 }
 
 fn names_in(comment: &str, choice: &ColumnChoice) -> Option<Vec<String>> {

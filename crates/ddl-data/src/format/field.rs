@@ -181,8 +181,7 @@ mod tests {
         let read = |text: &str| pedestrian(text, "pedestrian");
         assert_eq!(read(" 12.0"), Ok(PedestrianField::Number(12, None)));
         for (text, number) in [(" 1.2e1", 12), ("-0", 0), ("007", 7)] {
-            let as_written = Some(text.trim().into());
-            assert_eq!(read(text), Ok(PedestrianField::Number(number, as_written)));
+            assert_eq!(read(text), Ok(PedestrianField::Number(number, Some(text.trim().into()))));
         }
         for text in ["7f3e", "cam.0", "12e4567", "5e20", "9007199254740992", " a b "] {
             assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));

@@ -52,7 +52,6 @@ impl PositionColumns {
         }
         let example = Setting::Columns.to("left=NAME,width=NAME,...");
         let advice = format!("leave out rows without a box, or say which columns are which ({example})");
-        let side = columns[2 + usize::from(!is_backward[0])];
-        Err(Fault::at(side, format!("the box ends before it begins; {advice}")))
+        Err(Fault::at(columns[2 + usize::from(!is_backward[0])], format!("the box ends before it begins; {advice}")))
     }
 }

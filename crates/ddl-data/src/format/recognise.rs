@@ -114,13 +114,11 @@ impl<'a> FilledLines<'a> {
     }
 
     fn filled(self) -> impl Iterator<Item = &'a str> {
-        let lines = self.text.split(self.end);
-        lines.filter(|line| !line.trim().is_empty() && !is_comment(line))
+        self.text.split(self.end).filter(|line| !line.trim().is_empty() && !is_comment(line))
     }
 
     fn has_header_in_comment(self, count: usize, choice: &ColumnChoice) -> bool {
-        let lines = self.text.split(self.end);
-        let comments = lines.take_while(|line| line.trim().is_empty() || is_comment(line));
+        let comments = self.text.split(self.end).take_while(|line| line.trim().is_empty() || is_comment(line));
         names_in_comments(comments, count, choice).is_some()
     }
 
@@ -181,8 +179,7 @@ impl<'a> FilledLines<'a> {
 /// The fields of a line, without empty ones at its end; numbers have a decimal point.
 fn fields(separator: Separator, line: &str) -> Vec<String> {
     let fields = separator.fields(line).unwrap_or_default();
-    let fields = fields.iter().map(|field| separator.with_point(field).into_owned());
-    let mut fields: Vec<String> = fields.collect();
+    let mut fields: Vec<String> = fields.iter().map(|field| separator.with_point(field).into_owned()).collect();
     while fields.last().is_some_and(String::is_empty) {
         fields.pop();
     }

@@ -126,8 +126,7 @@ fn are_people(class: &str) -> bool {
 }
 
 fn is_marked(mark: &str) -> Option<bool> {
-    let number = mark.replacen(',', ".", 1).parse().ok();
-    let number = number.filter(|mark: &f64| !mark.is_nan());
+    let number = mark.replacen(',', ".", 1).parse().ok().filter(|mark: &f64| !mark.is_nan());
     match mark.to_ascii_lowercase().as_str() {
         "yes" | "y" | "true" | "t" => Some(true),
         "no" | "n" | "false" | "f" => Some(false),

@@ -75,8 +75,7 @@ impl RowReader {
         let (mut read, mut fields) = (Vec::with_capacity(most), Vec::new());
         let mut time = self.time.unwrap_or_default();
         for (line, text) in lines {
-            let split = self.columns.separator.split(text, &mut fields);
-            split.map_err(|fault| fault.in_line("", line))?;
+            self.columns.separator.split(text, &mut fields).map_err(|fault| fault.in_line("", line))?;
             if self.columns.is_comment(text, &fields) {
                 continue;
             }
@@ -156,8 +155,7 @@ impl RowReader {
     }
 
     fn notes(&self) -> Vec<String> {
-        let assumed = self.time.and_then(|time| time.assumed);
-        self.columns.notes(assumed, self.unread(), self.is_stream)
+        self.columns.notes(self.time.and_then(|time| time.assumed), self.unread(), self.is_stream)
     }
 
     fn unread(&self) -> &[usize] {

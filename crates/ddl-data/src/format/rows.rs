@@ -99,8 +99,7 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
                 id
             }
         };
-        let seen = Observation::new(row.frame, pedestrian, row.position);
-        (seen, row.place)
+        (Observation::new(row.frame, pedestrian, row.position), row.place)
     });
     (placed.collect(), PedestrianNames::new(names))
 }
@@ -147,6 +146,5 @@ fn restarts_of_tracks(rows: &[TrackRow], disorder: i64) -> usize {
 fn first_duplicate(rows: &mut [Placed]) -> Option<&[Placed; 2]> {
     let key = |(seen, _): &Placed| (seen.frame, seen.pedestrian);
     rows.sort_unstable_by_key(|row| (key(row), row.1));
-    let pairs = rows.array_windows().filter(|[first, again]| key(first) == key(again));
-    pairs.min_by_key(|[_, again]| again.1)
+    rows.array_windows().filter(|[first, again]| key(first) == key(again)).min_by_key(|[_, again]| again.1)
 }

@@ -107,8 +107,7 @@ impl Separator {
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
         let mut record = csv::StringRecord::new();
-        let read = reader.read_record(&mut record);
-        read.map_err(|error| format!("not a well-formed table: {error}"))?;
+        reader.read_record(&mut record).map_err(|error| format!("not a well-formed table: {error}"))?;
         Ok(record.iter().map(|field| field.to_owned().into()).collect())
     }
 }
@@ -124,8 +123,7 @@ mod tests {
             text in "[a0.,; \t\u{a0}\"]{0,12}[a0,;]\r?\n?",
             separator in prop_oneof![Just(Separator::Comma), Just(Separator::Semicolon)],
         ) {
-            let fields = separator.fields(&text).unwrap();
-            prop_assert_eq!(fields, separator.quoted_fields(&text).unwrap());
+            prop_assert_eq!(separator.fields(&text).unwrap(), separator.quoted_fields(&text).unwrap());
         }
     }
 }

@@ -269,8 +269,7 @@ impl<R: BufRead> FrameReader<R> {
         let comments: Vec<&str> = comments.lines().collect();
         let (columns, is_header) = TrackColumns::of((format, &self.choice), &comments, text, self.lines.number())?;
         self.frame_rate = self.frame_rate.or(columns.rate());
-        let reader = RowReader::of_stream(columns).map_err(|fault| self.lines.wrong(fault))?;
-        Ok((Kind::Text(Box::new(reader)), is_header))
+        Ok((Kind::Text(Box::new(RowReader::of_stream(columns).map_err(|fault| self.lines.wrong(fault))?)), is_header))
     }
 
     /// Adds an observation. If it begins a new frame of its scene, returns the previous frame of the scene.
@@ -285,8 +284,7 @@ impl<R: BufRead> FrameReader<R> {
         let scene = self.scenes.entry(name.clone()).or_insert_with(SceneProgress::unseen);
         let growing = scene.current.as_ref();
         if let Some(&first_line) = growing.and_then(|growing| growing.lines.get(&pedestrian)) {
-            let word = word.map(|word| PedestrianName::Word(word.to_string()));
-            let name = word.unwrap_or(pedestrian.into());
+            let name = word.map(|word| PedestrianName::Word(word.to_string())).unwrap_or(pedestrian.into());
             return Err(duplicate(name, (seen.frame, seen.unit), first_line).into());
         }
         // A returned frame makes room for a pedestrian.

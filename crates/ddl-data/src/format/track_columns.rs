@@ -83,8 +83,7 @@ impl TrackColumns {
                 }
                 (columns, false)
             } else {
-                let names = fields.into_iter().map(Cow::into_owned).collect();
-                (Self::named(names, separator, choice).map_err(here)?, true)
+                (Self::named(fields.into_iter().map(Cow::into_owned).collect(), separator, choice).map_err(here)?, true)
             }
         };
         if choice.is_mapped && columns.roles.has_unit {
@@ -126,9 +125,7 @@ impl TrackColumns {
     pub(super) fn refuse_cameras(&self) -> Result<(), Fault> {
         let is_kept = |index: usize| self.roles.keep.as_ref().is_some_and(|(kept, _)| *kept == index);
         let mut cameras = self.roles.constants.iter().filter(|&&index| is_camera(&self.names[index]));
-        let Some(&index) = cameras.find(|&&index| self.is_table() && !is_kept(index)) else {
-            return Ok(());
-        };
+        let Some(&index) = cameras.find(|&&index| self.is_table() && !is_kept(index)) else { return Ok(()) };
         let name = quoted(&self.names[index]);
         let keep = Setting::Keep.to(format!("{name}=VALUE"));
         Err(Fault::at(index, format!("rename the column {name} scene, or give {keep} for one of them")))
@@ -206,9 +203,7 @@ impl TrackColumns {
         if time.assumed == Some(WHOLE_TIMES) && frame % STAMPS_A_SECOND != 0 {
             time.assumed = None;
         }
-        let Some((index, name, a_second)) = self.roles.rest else {
-            return Ok(frame);
-        };
+        let Some((index, name, a_second)) = self.roles.rest else { return Ok(frame) };
         let rest = field::integer(&fields[index], name).map_err(|problem| Fault::at(index, problem))?;
         if !(0..a_second).contains(&rest) {
             return Err(Fault::at(index, format!("{rest} {name} are no part of a second")));
@@ -241,8 +236,7 @@ impl TrackColumns {
     /// Checks the columns of numbers that are not used, which confirms the order of the columns.
     pub(super) fn check_numbers(&self, fields: &[Cow<'_, str>]) -> Result<(), Fault> {
         self.roles.numbers.iter().try_for_each(|&index| {
-            let number = field::number(&self.number(fields, index), &self.names[index]);
-            number.map_err(|problem| Fault::at(index, problem))
+            field::number(&self.number(fields, index), &self.names[index]).map_err(|problem| Fault::at(index, problem))
         })
     }
 

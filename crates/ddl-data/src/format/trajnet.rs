@@ -26,9 +26,7 @@ pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), FormatErr
     let mut others = OtherLines::default();
     for (index, text) in text.lines().enumerate() {
         let observation = observation(text, index + 1, &mut others);
-        let Some(row) = FilePlace::line(index + 1).read(observation)? else {
-            continue;
-        };
+        let Some(row) = FilePlace::line(index + 1).read(observation)? else { continue };
         let key = match &row.pedestrian {
             PedestrianField::Number(number, _) => PedestrianField::Number(*number, None),
             word @ PedestrianField::Word(_) => word.clone(),
@@ -75,9 +73,7 @@ pub(super) struct OtherLines {
 impl OtherLines {
     #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
     fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), Problem> {
-        let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
-            return Ok(());
-        };
+        let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else { return Ok(()) };
         let rate = fps.as_f64().filter(|fps| fps.is_finite() && *fps > 0.0);
         let found = || quoted(&fps.to_string());
         let rate =
@@ -193,8 +189,7 @@ pub(super) fn observation(text: &str, line: usize, others: &mut OtherLines) -> R
         None => None,
         Some(Value::String(name)) => Some(SceneName::new(&name).map_err(|error| error.to_string())?),
         Some(other) => {
-            let found = quoted(&other.to_string());
-            return Err(Problem::value("track.scene", "a text, such as \"hall\"", found));
+            return Err(Problem::value("track.scene", "a text, such as \"hall\"", quoted(&other.to_string())));
         }
     };
     Ok(Some(TrackRow { scene, frame, unit, pedestrian, position: [x, y], place: FilePlace::line(line) }))
@@ -202,8 +197,7 @@ pub(super) fn observation(text: &str, line: usize, others: &mut OtherLines) -> R
 
 /// A value as in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
 fn written(value: Option<Value>, name: &str) -> Result<String, Problem> {
-    let value = value.ok_or_else(|| format!("{name} is missing"))?;
-    Ok(value.to_string())
+    Ok(value.ok_or_else(|| format!("{name} is missing"))?.to_string())
 }
 
 fn pedestrian(value: Option<Value>) -> Result<PedestrianField, Problem> {
@@ -215,23 +209,17 @@ fn pedestrian(value: Option<Value>) -> Result<PedestrianField, Problem> {
             Err(format!("track.p {number} has lost digits, as a number of JSON; write it as a text").into())
         }
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p"),
-        other => {
-            let number = field::integer(&written(other, "track.p")?, "track.p")?;
-            Ok(PedestrianField::Number(number, None))
-        }
+        other => Ok(PedestrianField::Number(field::integer(&written(other, "track.p")?, "track.p")?, None)),
     }
 }
 
 /// The fields of a part; `None` where it is missing or null.
 fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str) -> Result<Option<T>, Problem> {
-    let Some(text) = part.map(RawValue::get) else {
-        return Ok(None);
-    };
+    let Some(text) = part.map(RawValue::get) else { return Ok(None) };
     if !text.starts_with('{') {
         return Err(Problem::value(name, "a JSON object", quoted(text)));
     }
-    let fields = serde_json::from_str(text);
-    fields.map(Some).map_err(|error| not_one_object(&format!("{name}: {error}")))
+    serde_json::from_str(text).map(Some).map_err(|error| not_one_object(&format!("{name}: {error}")))
 }
 
 fn not_one_object(detail: &str) -> Problem {

@@ -104,12 +104,10 @@ fn along(id: i64, points: &[ControlPoint], rows: &mut Vec<TrackRow>) -> Result<(
                 continue;
             }
             let share = (frame - before.frame) as f64 / apart.max(1) as f64;
-            let position = between(before.position, after.position, share);
-            rows.push(TrackRow::numbered(frame, id, position, place));
+            rows.push(TrackRow::numbered(frame, id, between(before.position, after.position, share), place));
         }
         if rows.len() > MOST_ROWS {
-            let problem = format!("the splines have more than {MOST_ROWS} positions; are the frames right?");
-            return Err(place.wrong(problem));
+            return Err(place.wrong(format!("the splines have more than {MOST_ROWS} positions; are the frames right?")));
         }
     }
     Ok(())

@@ -32,8 +32,7 @@ fn noisy(rows: &[(f64, Position)], deviation: f64, seed: u64) -> Vec<(f64, Posit
 }
 
 fn farthest(a: &[Position], b: &[Position]) -> f64 {
-    let distances = a.iter().zip(b).map(|(a, b)| distance(*a, *b));
-    distances.fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max)
 }
 
 /// A hundred pedestrians at 10 rows a second: the noise that is measured is the noise that was added.
@@ -119,8 +118,7 @@ fn rows_that_go_on_from_a_jump_are_another_track() {
         let first = walk((0..20).map(|k| interval * f64::from(k)));
         let again = first[19].0 + gap;
         let second = walk((0..6).map(|k| again + interval * f64::from(k)));
-        let moved = second.into_iter().map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]]));
-        let moved: Vec<_> = moved.collect();
+        let moved: Vec<_> = second.into_iter().map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]])).collect();
         let seen = observed(&[first, moved].concat(), again + 5.0 * interval);
         let [.., before, last] = seen.positions;
         let speed = distance(before, last) / 0.4;

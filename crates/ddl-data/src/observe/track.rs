@@ -301,8 +301,7 @@ impl ObservedTrack {
     }
 
     fn accept(&mut self, row: TimedPosition, tick_time: f64, known: &RecordingNoise, recording: &mut RecordingNoise) {
-        let seconds = (row.time - self.last_time()) * tick_time;
-        self.noise.add(row.position, seconds, recording);
+        self.noise.add(row.position, (row.time - self.last_time()) * tick_time, recording);
         self.leave_out_close(tick_time);
         self.rows.push_back(row);
         let speed = self.noise.motion(self.level(known)).speed();

@@ -24,8 +24,7 @@ const ENTRY_CLEARANCE: f64 = 0.7;
 
 /// Runs a scene for `steps` recorded steps of 0.4 s.
 pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Vec<Observation> {
-    let end = WARM_UP + steps as f64 * TIME_STEP;
-    let parties = population::draw(layout, end, rng);
+    let parties = population::draw(layout, WARM_UP + steps as f64 * TIME_STEP, rng);
     let mut engine = CrowdEngine { layout, parties, waiting: Vec::new(), pedestrians: Vec::new(), next: 0, last_id: 0 };
     let mut observations = Vec::new();
     let warm_up = (WARM_UP / DT).round() as i64;
@@ -90,8 +89,7 @@ impl CrowdEngine<'_> {
         let before: Vec<WalkingMotion> = self.pedestrians.iter().map(|w| w.motion).collect();
         for index in 0..self.pedestrians.len() {
             let speed = self.parties[self.pedestrians[index].party].speed;
-            let acceleration = self.acceleration(index, &before);
-            let velocity = add(before[index].velocity, scale(acceleration, DT));
+            let velocity = add(before[index].velocity, scale(self.acceleration(index, &before), DT));
             let liveliness = (0.2 + norm(velocity) / speed).min(1.0) * RESTLESSNESS * DT.sqrt();
             let [x, y]: [f64; 2] = [StandardNormal.sample(rng), StandardNormal.sample(rng)];
             let velocity = add(velocity, scale([x, y], liveliness));

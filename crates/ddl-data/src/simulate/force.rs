@@ -72,14 +72,11 @@ pub(super) fn stranger(pedestrian: WalkingMotion, other: WalkingMotion, other_ra
     let angle = cross(ahead, towards).atan2(dot(ahead, towards)) + reach * SIDE;
     let falloff = STRENGTH * (-gap / reach).exp();
     let narrowed = |width: f64| falloff * (-(width * reach * angle).powi(2)).exp();
-    let brake = scale(ahead, -narrowed(BRAKING));
-    let turn = scale(left(ahead), -angle.signum() * narrowed(TURNING));
-    add(brake, turn)
+    add(scale(ahead, -narrowed(BRAKING)), scale(left(ahead), -angle.signum() * narrowed(TURNING)))
 }
 
 pub(super) fn pillar(pedestrian: WalkingMotion, pillar: &Pillar) -> Position {
-    let still = WalkingMotion { position: pillar.centre, velocity: [0.0, 0.0] };
-    stranger(pedestrian, still, pillar.radius)
+    stranger(pedestrian, WalkingMotion { position: pillar.centre, velocity: [0.0, 0.0] }, pillar.radius)
 }
 
 pub(super) fn wall(pedestrian: WalkingMotion, wall: &Segment) -> Position {
@@ -118,8 +115,7 @@ mod tests {
 0 0 1 0      6.5 0 0 0          0.3  -0.01444283   -0.01466395
 ";
         for case in cases.trim().lines() {
-            let numbers = case.split_whitespace().map(|n| n.parse().unwrap());
-            let n: Vec<f64> = numbers.collect();
+            let n: Vec<f64> = case.split_whitespace().map(|n| n.parse().unwrap()).collect();
             let moving =
                 |from: usize| WalkingMotion { position: [n[from], n[from + 1]], velocity: [n[from + 2], n[from + 3]] };
             let force = stranger(moving(0), moving(4), n[8]);

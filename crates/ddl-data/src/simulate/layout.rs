@@ -123,8 +123,7 @@ fn plaza() -> SceneLayout {
                 continue;
             }
             let route = Route::new(1.0, origin, &[goal]);
-            let place = places[(from + 2 * to) % places.len()];
-            routes.push(route.clone().standing(0.15, 0, place));
+            routes.push(route.clone().standing(0.15, 0, places[(from + 2 * to) % places.len()]));
             routes.push(route);
         }
     }

@@ -47,8 +47,7 @@ impl Segment {
         if length_squared == 0.0 {
             return self.a;
         }
-        let share = (dot(sub(p, self.a), along) / length_squared).clamp(0.0, 1.0);
-        add(self.a, scale(along, share))
+        add(self.a, scale(along, (dot(sub(p, self.a), along) / length_squared).clamp(0.0, 1.0)))
     }
 
     /// `p`, moved out of the wall far enough for a body of this radius.

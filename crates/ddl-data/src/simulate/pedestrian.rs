@@ -39,8 +39,7 @@ impl SimulatedPedestrian {
 
     /// The current desired velocity (m/s).
     pub(super) fn desired(&self, legs: &[RouteLeg], speed: f64, centre: Position) -> Position {
-        let target = self.targets[self.leg];
-        let way = sub(self.aim(legs, target), self.motion.position);
+        let way = sub(self.aim(legs, self.targets[self.leg]), self.motion.position);
         if matches!(legs[self.leg], RouteLeg::Stand(_)) && norm(way) < 2.0 * ARRIVED {
             // Slow down smoothly, then stand.
             return scale(way, speed.min(0.8));

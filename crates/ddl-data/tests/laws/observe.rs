@@ -214,8 +214,7 @@ proptest! {
         let together = partial(&recording(pace.clock(), rows.clone())).windows;
         let mine: Vec<_> = rows.into_iter().filter(|row| row.pedestrian.0 == 1).collect();
         for window in partial(&recording(pace.clock(), mine)).windows {
-            let moment = |other: &&Window| other.frames() == window.frames();
-            let Some(other) = together.iter().find(moment) else {
+            let Some(other) = together.iter().find(|other: &&Window| other.frames() == window.frames()) else {
                 continue; // the common windows may be due at other moments
             };
             let i = other.pedestrians().iter().position(|id| id.0 == 1).unwrap();
@@ -313,8 +312,7 @@ fn every_clock_is_observed() {
     // A common clock that jitters: each at every moment from its second row on.
     let jitter = |_| (0..100).map(|k| 1_000 + RowTimes::Jitter.frame(0, k)).collect();
     let recording = recording(Clock::with_frame_time(0.001).unwrap(), straight(jitter, 4));
-    let observed = partial(&recording);
-    assert_eq!(observed.windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
+    assert_eq!(partial(&recording).windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
     let slow = recording.observe(recording.live_tracks().with_interval(0.4)).windows;
     assert!((16..=18).contains(&slow.len()), "{} windows every 0.4 s of the last 7.1 s", slow.len());
 }

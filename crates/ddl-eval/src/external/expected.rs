@@ -27,9 +27,7 @@ impl PedestrianForecast {
     }
 
     fn check_weights(&self) -> Result<(), Problem> {
-        let Some(weights) = &self.weights else {
-            return Ok(());
-        };
+        let Some(weights) = &self.weights else { return Ok(()) };
         if let Some(&found) = weights.iter().find(|&&weight| weight < 0.0) {
             return Err(format!("a weight must not be below 0, found {found}").into());
         }
@@ -118,8 +116,7 @@ impl<'a> ExpectedForecasts<'a> {
         check_frames(&self.windows[window], forecast.frames.as_deref())?;
         let slot = &mut self.slots[window][pedestrian];
         if let Some(Slot { line: first_line, .. }) = slot {
-            let problem = format!("line {first_line} already forecasts this pedestrian; keep one");
-            return Err(Fault::from(problem));
+            return Err(Fault::from(format!("line {first_line} already forecasts this pedestrian; keep one")));
         }
         *slot = Some(Slot { forecast, line });
         Ok(())

@@ -30,8 +30,7 @@ pub(super) fn whole_number(number: f64) -> Option<i64> {
 
 /// Refuses a position so far away that later computations would overflow.
 pub(super) fn within_bounds(position: Position, field: impl FnOnce() -> String) -> Result<(), Fault> {
-    let far = position.into_iter().find(|c| c.abs() > COORDINATE_LIMIT);
-    far.map_or(Ok(()), |found| {
+    position.into_iter().find(|c| c.abs() > COORDINATE_LIMIT).map_or(Ok(()), |found| {
         Err(Fault::named(field(), format!("must lie within {COORDINATE_LIMIT} m of the origin, found {found}")))
     })
 }

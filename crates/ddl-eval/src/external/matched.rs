@@ -111,9 +111,7 @@ impl ExpectedForecasts<'_> {
             pedestrians,
         };
         for (window, slots) in self.windows.iter().zip(self.slots) {
-            let Some(reduced) = window.filter_pedestrians(|i| slots[i].is_some()) else {
-                continue;
-            };
+            let Some(reduced) = window.filter_pedestrians(|i| slots[i].is_some()) else { continue };
             let slots: Vec<Slot> = slots.into_iter().flatten().collect();
             matched.windows.push(reduced);
             matched.full_windows.push(window.clone());
@@ -125,17 +123,16 @@ impl ExpectedForecasts<'_> {
     }
 
     fn first_missing(&self) -> Vec<String> {
-        let rows = self.windows.iter().zip(&self.slots);
-        rows.flat_map(|(window, slots)| {
-            let missing = (0..window.len()).filter(|&i| slots[i].is_none());
-            missing.map(move |i| (window, i))
-        })
-        .take(NAMED)
-        .map(|(window, i)| {
-            let name = window.name(i);
-            named(Some(window.recording()), last_observed(window), &name)
-        })
-        .collect()
+        self.windows
+            .iter()
+            .zip(&self.slots)
+            .flat_map(|(window, slots)| (0..window.len()).filter(|&i| slots[i].is_none()).map(move |i| (window, i)))
+            .take(NAMED)
+            .map(|(window, i)| {
+                let name = window.name(i);
+                named(Some(window.recording()), last_observed(window), &name)
+            })
+            .collect()
     }
 }
 

@@ -15,8 +15,7 @@ pub(super) struct PedestrianKey {
 
 impl PedestrianKey {
     pub(super) fn named(&self) -> String {
-        let recording = self.recording.as_deref();
-        named(recording, self.observed_until, &self.pedestrian)
+        named(self.recording.as_deref(), self.observed_until, &self.pedestrian)
     }
 
     pub(super) fn too_many_hypotheses(&self) -> String {

@@ -89,9 +89,7 @@ pub fn read_samples(folder: &Path, windows: &[Window], coverage: Coverage) -> Re
     let mut first: Option<(usize, PathBuf)> = None;
     for recording in expected.recordings.clone() {
         let names = [recording, scene_name(recording)].map(|name| folder.join(name));
-        let Some(scene) = names.iter().find(|scene| scene.is_dir()) else {
-            continue;
-        };
+        let Some(scene) = names.iter().find(|scene| scene.is_dir()) else { continue };
         for (frame, moment) in numbered::<i64>(scene, "frame_", "")? {
             let samples = samples_of(&moment)?;
             let (count, of_first) = first.get_or_insert_with(|| (samples.len(), moment.clone()));
@@ -150,8 +148,7 @@ fn read_window(
     }
     for (pedestrian, (line, forecast)) in all {
         let who = PedestrianKey { recording: Some(recording.to_owned()), observed_until, pedestrian };
-        let put = expected.put(&who, forecast, line);
-        put.map_err(|fault| fault.in_line(&samples[0].display().to_string(), line))?;
+        expected.put(&who, forecast, line).map_err(|fault| fault.in_line(&samples[0].display().to_string(), line))?;
     }
     Ok(())
 }
@@ -161,8 +158,7 @@ fn read_sample(file: &Path, origin: &str) -> Result<SampleFile, ExternalError> {
     let (mut lines, mut sample) = (lines_of(reader, origin), SampleFile::new());
     let mut last = None;
     while let Some(text) = lines.next_filled()? {
-        let row = row(text);
-        let (name, frame, position) = row.map_err(|fault| lines.wrong(fault))?;
+        let (name, frame, position) = row(text).map_err(|fault| lines.wrong(fault))?;
         if last.as_ref() != Some(&name) && sample.contains_key(&name) {
             return Err(lines.wrong(format!("the rows of pedestrian {name} must stand together")).into());
         }
@@ -182,8 +178,7 @@ fn row(text: &str) -> Result<(PedestrianName, i64, Position), Fault> {
     };
     let position = [finite(x, "x")?, finite(y, "y")?];
     within_bounds(position, || "x, y".to_owned())?;
-    let pedestrian = PedestrianName::Number(whole_number(pedestrian, "pedestrian")?);
-    Ok((pedestrian, whole_number(frame, "frame")?, position))
+    Ok((PedestrianName::Number(whole_number(pedestrian, "pedestrian")?), whole_number(frame, "frame")?, position))
 }
 
 /// The files `sample_000.txt` ... of a window, of which none is left out.

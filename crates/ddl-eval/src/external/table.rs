@@ -16,9 +16,7 @@ const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];
 
 pub(super) fn read(lines: TextLines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
     let mut rows = TableRows::new(lines);
-    let Some(header) = rows.next()? else {
-        return Ok(());
-    };
+    let Some(header) = rows.next()? else { return Ok(()) };
     let columns = TableColumns::of(&header).map_err(|fault| rows.wrong(fault))?;
     let mut numbering = HypothesisNumbering::default();
     let mut group: Option<PedestrianRows> = None;
@@ -145,8 +143,7 @@ impl PedestrianRows {
                 return Err(Fault::named("hypothesis", format!("hypothesis {hypothesis} {problem}")));
             }
             if self.hypotheses.len() == Protocol::MAX_HYPOTHESES {
-                let problem = self.who.too_many_hypotheses();
-                return Err(Fault::named("hypothesis", problem));
+                return Err(Fault::named("hypothesis", self.who.too_many_hypotheses()));
             }
             self.hypotheses.push(HypothesisRows {
                 hypothesis,
@@ -156,9 +153,7 @@ impl PedestrianRows {
                 positions: Vec::with_capacity(HORIZON),
             });
         }
-        let Some(rows) = self.hypotheses.last_mut() else {
-            return Ok(());
-        };
+        let Some(rows) = self.hypotheses.last_mut() else { return Ok(()) };
         if let (Some(first), Some(found)) = (rows.weight, row.weight)
             && first.to_bits() != found.to_bits()
         {
@@ -190,8 +185,7 @@ impl PedestrianRows {
             }
             let frames = forecast.frames.get_or_insert_with(|| rows.frames.clone());
             if *frames != rows.frames {
-                let problem = wrong_frames(&rows.frames, frames);
-                return Err((rows.line, Fault::named("frame", problem)));
+                return Err((rows.line, Fault::named("frame", wrong_frames(&rows.frames, frames))));
             }
             forecast.positions.extend(rows.positions);
             if let Some(weight) = rows.weight {
@@ -203,8 +197,7 @@ impl PedestrianRows {
 }
 
 pub(super) fn whole_number(text: &str, name: &'static str) -> Result<i64, Fault> {
-    let number = text.parse().ok();
-    let number = number.or_else(|| lines::whole_number(text.parse().ok()?));
+    let number = text.parse().ok().or_else(|| lines::whole_number(text.parse().ok()?));
     number.ok_or_else(|| Fault::named(name, format!("must be a whole number, found {:?}", quoted(text))))
 }
 

@@ -43,9 +43,7 @@ impl<R: BufRead> TableRows<R> {
 
     pub(super) fn next(&mut self) -> Result<Option<Fields<'_>>, ExternalError> {
         if self.at == self.line.len() {
-            let Some(text) = self.lines.next_filled()? else {
-                return Ok(None);
-            };
+            let Some(text) = self.lines.next_filled()? else { return Ok(None) };
             self.at = 0;
             self.line.clear();
             self.line.extend_from_slice(text.as_bytes());

@@ -54,8 +54,7 @@ impl DistributionErrors {
                 .plus(PlaneCovariance { xx: about, xy: 0.0, yy: about })
                 .principal_axes()
                 .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
-            let off = [p[0] - moments.mean[0], p[1] - moments.mean[1]];
-            distance += axes.mahalanobis_squared(off).sqrt();
+            distance += axes.mahalanobis_squared([p[0] - moments.mean[0], p[1] - moments.mean[1]]).sqrt();
             covariance = covariance.plus(axes.covariance());
         }
         Some(Self { mahalanobis: distance / HORIZON as f64, covariance: covariance.scaled(1.0 / HORIZON as f64) })

@@ -30,11 +30,9 @@ fn densities_and_distances_in_deviations_agree_with_scipy_and_numpy() {
         assert_relative_eq!(actual, expected, epsilon = 1e-10, max_relative = 1e-10);
     };
     for case in cases {
-        let actual = log_density(&case.points, &case.weights, case.at);
-        agree(actual, case.log_density);
+        agree(log_density(&case.points, &case.weights, case.at), case.log_density);
         let moments = PointMoments::of(&case.points, &case.weights);
-        let axes = moments.covariance.principal_axes();
-        let axes = axes.with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
+        let axes = moments.covariance.principal_axes().with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
         let off = [case.at[0] - moments.mean[0], case.at[1] - moments.mean[1]];
         if axes.variances[1] > MIN_DEVIATION * MIN_DEVIATION {
             agree(axes.covariance().xy, moments.covariance.xy);

@@ -39,8 +39,7 @@ pub(crate) fn read(text: &str, format: ExternalFormat, coverage: Coverage) -> Re
 }
 
 pub(crate) fn matched_of(windows: &[Window], text: &str, coverage: Coverage) -> Result<Matched, ExternalError> {
-    let format = ExternalFormat::JsonLines;
-    external::read_from(text.as_bytes(), "f", format, windows, coverage)
+    external::read_from(text.as_bytes(), "f", ExternalFormat::JsonLines, windows, coverage)
 }
 
 pub(crate) fn conditions(protocol: Protocol) -> Conditions {

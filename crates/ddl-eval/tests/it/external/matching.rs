@@ -39,8 +39,7 @@ fn pedestrians_may_have_words_for_names() {
             writeln!(seen, "{},{word},{t},{y}", 10 * t).unwrap();
         }
     }
-    let recording = parse_recording(seen.as_bytes(), "yard", Format::Table).unwrap();
-    let windows = recording.windows(WindowRule::Complete);
+    let windows = parse_recording(seen.as_bytes(), "yard", Format::Table).unwrap().windows(WindowRule::Complete);
     let mut asked = Vec::new();
     external::write_windows(&windows, &mut asked).unwrap();
     let asked = String::from_utf8(asked).unwrap();
@@ -78,8 +77,7 @@ fn what_ddl_forecast_writes_beside_is_passed_over_and_goals_of_null_are_none() {
     assert_eq!(forecast.goal(0, 1), Some([2.0, 0.0]));
     assert!((forecast.weight(0, 0) - 0.75).abs() < f64::EPSILON);
     let text = whole_file().replace("{\"positions\"", "{\"goal\":null,\"weight\":1.0,\"positions\"");
-    let matched = read(&text, ExternalFormat::JsonLines, Coverage::Whole).unwrap();
-    assert_eq!(matched.forecasts, expected());
+    assert_eq!(read(&text, ExternalFormat::JsonLines, Coverage::Whole).unwrap().forecasts, expected());
 }
 
 #[test]

@@ -15,8 +15,7 @@ fn check(format: ExternalFormat, text: &str, expected: &str) {
 /// The cases of a section of `mistakes.txt`.
 pub(super) fn cases_of(section: &str) -> Vec<String> {
     let (_, cases) = CASES.split_once(&format!("== {section}\n")).unwrap();
-    let cases = cases.split("\n== ").next().unwrap().trim().replace("\\\n", "");
-    cases.lines().map(str::to_owned).collect()
+    cases.split("\n== ").next().unwrap().trim().replace("\\\n", "").lines().map(str::to_owned).collect()
 }
 
 /// The cases of a section; `file` makes the file of the parts of a case.
