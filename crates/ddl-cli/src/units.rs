@@ -55,11 +55,11 @@ pub(crate) struct ReadRecording {
 }
 
 fn columns(text: &str) -> anyhow::Result<ColumnChoice> {
-    ColumnChoice::default().with_columns(text).map_err(anyhow::Error::msg)
+    Ok(ColumnChoice::default().with_columns(text).map_err(|error| error.problem)?)
 }
 
 fn kept(text: &str) -> anyhow::Result<String> {
-    ColumnChoice::default().keeping(text).map(|_| text.to_owned()).map_err(anyhow::Error::msg)
+    Ok(ColumnChoice::default().keeping(text).map(|_| text.to_owned()).map_err(|error| error.problem)?)
 }
 
 /// A recording, the name of its format and, of a log, the topic.
@@ -93,7 +93,7 @@ impl Units {
         }
         let columns = self.columns.as_ref().map(ToString::to_string);
         let given = [&columns, &self.keep, &self.unit].map(Option::as_deref);
-        ColumnChoice::given(given, is_mapped).map_err(anyhow::Error::msg)
+        Ok(ColumnChoice::given(given, is_mapped)?)
     }
 
     /// The option that gives the rate, with its value.

@@ -112,11 +112,11 @@ impl Clock {
         if !(frames >= 1e-3 && frames.ceil() < (1_i64 << 31) as f64) {
             return Err(ClockError::FrameTime { found: seconds });
         }
-        if let Some(frame_step) = whole(frames, TOLERANCE) {
+        if let Some(frame_step) = nearest_whole(frames, TOLERANCE) {
             return Self::with_frame_step(frame_step);
         }
         let mut counts = 1..MOST_TICKS;
-        let fitting = counts.find_map(|ticks| Some((ticks, whole(frames * ticks as f64, FIT)?)));
+        let fitting = counts.find_map(|ticks| Some((ticks, nearest_whole(frames * ticks as f64, FIT)?)));
         // A thousandth of a frame is always accurate enough.
         let (ticks, frame_step) = fitting.unwrap_or((MOST_TICKS, (frames * MOST_TICKS as f64).round() as i64));
         Ok(Self { count: Count::Frames { ticks }, frame_step })
@@ -162,13 +162,10 @@ impl Clock {
     /// # Errors
     /// [`ClockError::Frame`] for a frame number that is too large to be divided.
     pub fn tick(self, frame: i64) -> Result<i64, ClockError> {
-        let Count::Frames { ticks } = self.count else {
-            return Ok(frame);
-        };
+        let Count::Frames { ticks } = self.count else { return Ok(frame) };
         let tick = frame.checked_mul(ticks).filter(|tick| is_frame(*tick));
         // A number that needs no division is checked where it is used.
-        let tick = tick.or((ticks == 1).then_some(frame));
-        tick.ok_or(ClockError::Frame { frame, ticks })
+        tick.or((ticks == 1).then_some(frame)).ok_or(ClockError::Frame { frame, ticks })
     }
 
     /// Microseconds at a tick: those of time stamps or, of frames, since frame 0.
@@ -257,7 +254,7 @@ impl Serialize for FrameNumber {
 }
 
 /// The whole number nearest to a number, if it is at most `tolerance` of it away.
-fn whole(number: f64, tolerance: f64) -> Option<i64> {
+fn nearest_whole(number: f64, tolerance: f64) -> Option<i64> {
     let nearest = number.round();
     (nearest >= 1.0 && (nearest - number).abs() <= tolerance * number).then_some(nearest as i64)
 }

@@ -55,9 +55,7 @@ impl Convention {
     /// Names of the folds in which a memory of the place of the test recordings may hold training recordings
     /// ([`Fold::place_memory_confirmed_by`](crate::Fold::place_memory_confirmed_by)).
     pub fn folds_with_place_memory(self) -> impl Iterator<Item = &'static str> {
-        let folds = self.plan().folds.iter();
-        let confirmed = folds.filter(|fold| !fold.place_memory.is_empty());
-        confirmed.map(|fold| fold.name.as_str())
+        self.plan().folds.iter().filter(|fold| !fold.place_memory.is_empty()).map(|fold| fold.name.as_str())
     }
 
     pub(crate) fn plan(self) -> &'static ConventionPlan {

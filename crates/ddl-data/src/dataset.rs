@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::convention::Convention;
-use crate::error::DataError;
+use crate::file_error::DataError;
 use crate::fold::Fold;
 use crate::format::read_recording;
 use crate::recording::Recording;
@@ -137,21 +137,18 @@ impl Dataset {
             known: self.fold_names().into_iter().map(str::to_owned).collect(),
         };
         if self.convention == Convention::Own {
-            let left_out = self.recordings.iter().find(|r| r.name() == name);
-            let name = left_out.ok_or_else(unknown)?.name();
+            let name = self.recordings.iter().find(|r| r.name() == name).ok_or_else(unknown)?.name();
             return Ok(Fold::new(name, &[name.to_owned()], &self.recordings, None));
         }
         let convention = self.convention.plan();
         let mut folds = convention.folds.iter();
         let plan = folds.find(|f| f.name == name).ok_or_else(unknown)?;
-        let planned = Some((convention, plan));
-        Ok(Fold::new(&plan.name, &plan.test, &self.recordings, planned))
+        Ok(Fold::new(&plan.name, &plan.test, &self.recordings, Some((convention, plan))))
     }
 
     /// Every fold, in order.
     #[must_use]
     pub fn folds(&self) -> Vec<Fold<'_>> {
-        let names = self.fold_names().into_iter();
-        names.filter_map(|name| self.fold(name).ok()).collect()
+        self.fold_names().into_iter().filter_map(|name| self.fold(name).ok()).collect()
     }
 }

@@ -3,7 +3,7 @@
 use ddl_core::Window;
 
 use crate::convention::{ConventionPlan, FoldPlan};
-use crate::error::DataError;
+use crate::file_error::DataError;
 use crate::recording::Recording;
 use crate::rule::WindowRule;
 
@@ -128,7 +128,7 @@ impl<'a> Fold<'a> {
         let mut split = TrainingSplit { training: Vec::new(), validation: Vec::new() };
         for recording in &self.training {
             let frames = recording.frames();
-            let cut = recording.cut_index(validation_fraction);
+            let cut = cut_index(recording, validation_fraction);
             for window in recording.windows(rule) {
                 let (first, last) = (window.start_frame(), window.frames()[window.steps() - 1]);
                 match frames.get(cut) {
@@ -138,8 +138,14 @@ impl<'a> Fold<'a> {
                 }
             }
         }
-        let set_apart = self.set_apart.iter().flat_map(|r| r.windows(rule));
-        split.validation.extend(set_apart);
+        split.validation.extend(self.set_apart.iter().flat_map(|r| r.windows(rule)));
         split
     }
+}
+
+/// Index of the annotated frame at which the last share of a recording begins.
+fn cut_index(recording: &Recording, share: f64) -> usize {
+    // NaN counts as 0.
+    let first = (1.0 - share.max(0.0).clamp(0.0, 1.0)) * recording.frames().len() as f64;
+    (first.floor() as usize).min(recording.frames().len())
 }

@@ -7,16 +7,19 @@ mod choice;
 mod column_names;
 mod comments;
 mod edinburgh;
+mod fault;
 mod field;
 mod header;
 mod kind;
 mod layouts;
+mod lines;
 mod order;
-mod place;
 mod position_columns;
 mod problem;
+mod quoted;
 mod recognise;
 mod row_filter;
+mod row_reader;
 mod rows;
 mod separator;
 mod star_csv;
@@ -29,15 +32,17 @@ mod write;
 
 use std::path::Path;
 
-pub use choice::ColumnChoice;
-pub use field::escaped;
+pub use choice::{ChoiceError, ColumnChoice};
+pub use fault::{Fault, Field, FormatError, Problem, WrongValue};
+
 pub use kind::Format;
-pub use row_filter::is_vehicle;
+pub use lines::TextLines;
+pub use quoted::{escaped, quoted};
 pub use stream::{Frame, FrameReader};
 pub use write::write_recording;
 
-use crate::error::DataError;
-use crate::format::place::{FilePlace, Misread};
+use crate::file_error::DataError;
+use crate::format::fault::FilePlace;
 use crate::format::problem::NOT_UTF8;
 use crate::format::text::TextFile;
 use crate::recording::Recording;
@@ -87,10 +92,10 @@ pub fn parse_columns(
     format: Format,
     choice: &ColumnChoice,
 ) -> Result<Recording, DataError> {
-    let read = rows_of(bytes, format, choice).map_err(|error| error.in_file(origin))?;
-    let columns = read.columns.as_ref();
+    let read = rows_of(bytes, format, choice).map_err(|error| error.in_text(origin))?;
+    let reader = read.reader.as_ref();
     let scene = read.rows.first().and_then(|row| row.scene.clone());
-    let advice_on_same = |lines| TextFile::advice_on_same(columns, bytes, lines);
+    let advice_on_same = |lines| TextFile::advice_on_same(reader, bytes, lines);
     let mut recording = rows::into_recording(read.rows, origin, advice_on_same)?;
     // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
     recording.rate = match (read.rate, recording.time_unit()) {
@@ -105,7 +110,7 @@ pub fn parse_columns(
 }
 
 /// The observations of a file.
-fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFile, Misread> {
+fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
     if let Some((_, problem)) = OTHERS.iter().find(|(first, _)| first.iter().any(|first| bytes.starts_with(first))) {
         return Err(FilePlace::line(1).wrong(*problem));
     }
@@ -116,8 +121,7 @@ fn rows_of(bytes: &[u8], format: Format, choice: &ColumnChoice) -> Result<TextFi
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     if matches!(format, Format::StarCsv | Format::TrajNet | Format::Vsp | Format::Edinburgh) {
-        let allowed = choice.refuse_for(format);
-        allowed.map_err(|problem| FilePlace::line(1).wrong(problem))?;
+        FilePlace::line(1).read(choice.refuse_for(format))?;
     }
     match format {
         Format::StarCsv => Ok(TextFile::without_columns(star_csv::parse(text)?, None, None)),

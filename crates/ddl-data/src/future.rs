@@ -13,7 +13,7 @@ const JOINED: f64 = 1.2;
 
 /// The true paths of the pedestrians of a recording.
 #[derive(Debug)]
-pub struct Futures<'a> {
+pub struct TruePaths<'a> {
     tracks: BTreeMap<PedestrianId, Vec<&'a Observation>>,
     frame_step: i64,
 }
@@ -28,20 +28,20 @@ impl Recording {
     /// let walk = (0..10).map(|t| Observation::new(10 * t, PedestrianId(1), [t as f64, 0.0])).collect();
     /// let recording = Recording::new("yard", 10, walk)?;
     /// let first = &recording.observed_windows()[0];
-    /// assert_eq!(recording.futures().of(first), [[[8.0, 0.0], [9.0, 0.0]]]);
+    /// assert_eq!(recording.futures().after(first), [[[8.0, 0.0], [9.0, 0.0]]]);
     /// # Ok::<(), ddl_data::RecordingError>(())
     /// ```
     #[must_use]
-    pub fn futures(&self) -> Futures<'_> {
-        Futures { tracks: self.tracks(), frame_step: self.frame_step() }
+    pub fn futures(&self) -> TruePaths<'_> {
+        TruePaths { tracks: self.tracks(), frame_step: self.frame_step() }
     }
 }
 
-impl Futures<'_> {
+impl TruePaths<'_> {
     /// The positions of each pedestrian (m) every 0.4 s after an observed window, up to [`HORIZON`] of them: rows at
     /// these times, or points between rows at most 1.2 s apart. They end where there are no such rows.
     #[must_use]
-    pub fn of(&self, window: &Window) -> Vec<Vec<Position>> {
+    pub fn after(&self, window: &Window) -> Vec<Vec<Position>> {
         let last = window.frames()[OBSERVED - 1];
         let path = |pedestrian| {
             let track = self.tracks.get(pedestrian).map_or(&[][..], Vec::as_slice);
@@ -61,11 +61,8 @@ pub(crate) fn position_at(track: &[&Observation], tick: i64, step: i64) -> Optio
     if off(&nearest) as f64 <= ON_STEP * step as f64 {
         return Some(nearest.position);
     }
-    let [Some(before), Some(after)] = rows else {
-        return None;
-    };
+    let [Some(before), Some(after)] = rows else { return None };
     let apart = (after.frame - before.frame) as f64;
-    let share = (tick - before.frame) as f64 / apart;
-    let between = between(before.position, after.position, share);
+    let between = between(before.position, after.position, (tick - before.frame) as f64 / apart);
     (apart * TIME_STEP <= JOINED * step as f64).then_some(between)
 }

@@ -44,8 +44,7 @@ impl Homography {
         let [x, y, w] = self.0.map(|[a, b, c]| a * u + b * v + c);
         let place = [x / w, y / w];
         // False for NaN.
-        let near = place.iter().all(|c| c.abs() <= COORDINATE_LIMIT);
-        near.then_some(place)
+        place.iter().all(|c| c.abs() <= COORDINATE_LIMIT).then_some(place)
     }
 
     /// The place on the ground (m) of a pedestrian seen at a pixel. The frame and the pedestrian are named in the

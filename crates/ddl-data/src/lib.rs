@@ -34,6 +34,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Without the feature `files`, which is on by default, the crate has only what a forecast of live tracks needs: no
+//! formats, data sets and simulated crowds.
+//!
 //! ## The ETH/UCY recordings
 //!
 //! ```rust,no_run
@@ -67,15 +70,23 @@
 //! [`Fold::training_split`] keeps the last part of each training recording for validation. With the fraction 0.2 the
 //! windows are those of the published folders `train` and `val` of Social-GAN.
 
+mod class;
 mod clock;
+#[cfg(feature = "files")]
 mod convention;
+#[cfg(feature = "files")]
 mod dataset;
 mod error;
+#[cfg(feature = "files")]
+mod file_error;
+#[cfg(feature = "files")]
 mod fold;
+#[cfg(feature = "files")]
 mod format;
 mod future;
 mod homography;
 mod live;
+#[cfg(feature = "files")]
 mod locate;
 mod observation;
 mod observe;
@@ -84,22 +95,31 @@ mod recording;
 mod replay;
 mod rule;
 mod scene_name;
+#[cfg(feature = "files")]
 mod simulate;
 mod summary;
 mod windows;
 
+pub use class::is_vehicle;
 pub use clock::{Clock, ClockError, FrameNumber, TimeUnit};
+#[cfg(feature = "files")]
 pub use convention::Convention;
+#[cfg(feature = "files")]
 pub use dataset::Dataset;
-pub use error::{DataError, FormatError, LiveError, RecordingError};
+pub use error::{LiveError, RecordingError};
+#[cfg(feature = "files")]
+pub use file_error::DataError;
+#[cfg(feature = "files")]
 pub use fold::{Fold, TrainingSplit};
+#[cfg(feature = "files")]
 pub use format::{
-    ColumnChoice, Format, Frame, FrameReader, escaped, is_vehicle, parse_columns, parse_recording, read_recording,
-    write_recording,
+    ChoiceError, ColumnChoice, Fault, Field, Format, FormatError, Frame, FrameReader, Problem, TextLines, WrongValue,
+    escaped, parse_columns, parse_recording, quoted, read_recording, write_recording,
 };
-pub use future::Futures;
+pub use future::TruePaths;
 pub use homography::{Homography, HomographyError};
 pub use live::{Completeness, LiveTracks, checked_frame};
+#[cfg(feature = "files")]
 pub use locate::locate;
 pub use observation::Observation;
 pub use observe::{Misfit, MisfitTreatment, RecordingNoise};
@@ -107,5 +127,5 @@ pub use plausibility::{Fastest, PlausibilityWarning};
 pub use recording::Recording;
 pub use replay::ObservedRecording;
 pub use rule::WindowRule;
-pub use scene_name::SceneName;
+pub use scene_name::{SceneName, SceneNameError};
 pub use summary::{Gap, Summary};

@@ -8,7 +8,7 @@ use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, TIME_STEP, Win
 
 use crate::clock::{Clock, ClockError};
 use crate::error::LiveError;
-use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, Row};
+use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, TimedPosition};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -152,7 +152,7 @@ impl LiveTracks {
         Ok(Self::with_clock(Clock::with_frame_step(frame_step)?))
     }
 
-    pub(crate) fn of(recording: &Recording) -> Self {
+    pub(crate) fn of_recording(recording: &Recording) -> Self {
         Self {
             name: recording.shared_name(),
             names: recording.names().clone(),
@@ -243,8 +243,7 @@ impl LiveTracks {
 
     /// Whether the last row of a pedestrian was left out.
     pub fn has_left_out(&self, id: PedestrianId) -> bool {
-        let pedestrian = self.pedestrians.get(&id);
-        pedestrian.is_some_and(|one| one.track.last_time() < one.last_row as f64)
+        self.pedestrians.get(&id).is_some_and(|one| one.track.last_time() < one.last_row as f64)
     }
 
     /// The rows that the last frame showed to be wrong, and the tracks that it began anew.
@@ -286,7 +285,7 @@ impl LiveTracks {
                 Entry::Occupied(mut place) => {
                     let pedestrian = Arc::make_mut(place.get_mut());
                     pedestrian.last_row = tick;
-                    let row = Row { time, position };
+                    let row = TimedPosition { time, position };
                     let swap = exchanged.iter().find(|(other, _)| *other == id);
                     let misfit = if let Some((_, distance)) = swap {
                         pedestrian.track = ObservedTrack::beginning(time, position);
@@ -357,8 +356,7 @@ impl LiveTracks {
     /// Decides whether there is a window at this tick, which has so many rows.
     fn decide_moment(&mut self, tick: i64, rows: usize) {
         let step = self.clock.frame_step();
-        let recent = self.pedestrians.values().filter(|pedestrian| tick - pedestrian.last_row < step);
-        if recent.count() > 1 {
+        if self.pedestrians.values().filter(|pedestrian| tick - pedestrian.last_row < step).count() > 1 {
             self.frames_of_several += u64::from(rows > 1);
             self.frames_of_one += u64::from(rows == 1);
         }

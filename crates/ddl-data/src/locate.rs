@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::convention::Convention;
-use crate::error::DataError;
+use crate::file_error::DataError;
 
 /// Environment variable that names the folder of the recordings.
 const DATASETS_VARIABLE: &str = "DDL_DATASETS";
@@ -93,8 +93,8 @@ mod tests {
 
     #[test]
     fn relative_folders_are_looked_for_up_to_the_root_of_the_workspace() {
-        let outer = tempfile::tempdir().unwrap();
-        let workspace = outer.path().join("workspace");
+        let folder = tempfile::tempdir().unwrap();
+        let workspace = folder.path().join("workspace");
         let member = workspace.join("crates/member");
         std::fs::create_dir_all(&member).unwrap();
         std::fs::write(workspace.join("Cargo.lock"), "").unwrap();
@@ -103,9 +103,7 @@ mod tests {
         assert_eq!(folders[2], workspace.join(DEFAULT_FOLDER));
         let relative = roots(None, Some(Path::new("../data")), &member);
         assert_eq!(relative[2], workspace.join("../data"));
-        let variable = roots(None, Some(Path::new("/data")), &member);
-        assert_eq!(variable, [PathBuf::from("/data")]);
-        let explicit = roots(Some(Path::new("mine")), Some(Path::new("/data")), &member);
-        assert_eq!(explicit, [PathBuf::from("mine")]);
+        assert_eq!(roots(None, Some(Path::new("/data")), &member), [PathBuf::from("/data")]);
+        assert_eq!(roots(Some(Path::new("mine")), Some(Path::new("/data")), &member), [PathBuf::from("mine")]);
     }
 }

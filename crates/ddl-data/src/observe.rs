@@ -11,7 +11,7 @@ pub(crate) use estimate::ON_STEP;
 pub(crate) use exchange::exchanged;
 pub use misfit::{Misfit, MisfitTreatment};
 pub use noise::RecordingNoise;
-pub(crate) use track::{LONGEST_GAP, ObservedTrack, Row};
+pub(crate) use track::{LONGEST_GAP, ObservedTrack, TimedPosition};
 
 #[cfg(test)]
 mod tests;

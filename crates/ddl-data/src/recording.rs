@@ -18,7 +18,7 @@ const FASTEST: f64 = 1e-3;
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
 /// Invariants: at least one observation, every position finite and within
-/// [`COORDINATE_LIMIT`](crate::COORDINATE_LIMIT), at most one observation per pedestrian and frame, a positive frame
+/// [`COORDINATE_LIMIT`](ddl_core::COORDINATE_LIMIT), at most one observation per pedestrian and frame, a positive frame
 /// step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
@@ -39,7 +39,7 @@ pub struct Recording {
 impl Recording {
     /// Creates a recording from observations in any order.
     ///
-    /// `frame_step` is the number of raw frames per step of [`TIME_STEP`](crate::TIME_STEP) seconds.
+    /// `frame_step` is the number of raw frames per step of [`TIME_STEP`](ddl_core::TIME_STEP) seconds.
     ///
     /// # Errors
     /// If there are no observations, the frame step is outside 1..=2^31, a frame is 2^53 or more in size, a position is
@@ -111,8 +111,7 @@ impl Recording {
     pub(crate) fn differences(&self) -> Vec<i64> {
         let mut last_frames = HashMap::new();
         let rows = self.observations.iter();
-        let differences = rows.filter_map(|row| Some(row.frame - last_frames.insert(row.pedestrian, row.frame)?));
-        differences.collect()
+        rows.filter_map(|row| Some(row.frame - last_frames.insert(row.pedestrian, row.frame)?)).collect()
     }
 
     /// Median difference of frame numbers between successive rows of a pedestrian; `None` if no pedestrian has two.
@@ -286,14 +285,5 @@ impl Recording {
     /// One pedestrian's observations in order of time; empty if no pedestrian has this id.
     pub fn track(&self, pedestrian: PedestrianId) -> Vec<Observation> {
         self.observations.iter().filter(|o| o.pedestrian == pedestrian).copied().collect()
-    }
-
-    /// Index of the annotated frame at which the last share of the recording begins.
-    pub(crate) fn cut_index(&self, fraction: f64) -> usize {
-        // NaN counts as 0.
-        let fraction = fraction.max(0.0).clamp(0.0, 1.0);
-        #[expect(clippy::cast_sign_loss, reason = "a share of a count is not negative")]
-        let cut = ((1.0 - fraction) * self.frames.len() as f64).floor() as usize;
-        cut.min(self.frames.len())
     }
 }

@@ -2,7 +2,7 @@
 
 use ddl_core::{HORIZON, WINDOW, Window};
 
-use crate::future::Futures;
+use crate::future::TruePaths;
 use crate::live::{Completeness, LiveTracks};
 use crate::observe::{Misfit, RecordingNoise};
 use crate::recording::Recording;
@@ -27,7 +27,7 @@ impl Recording {
     /// far.
     #[must_use]
     pub fn live_tracks(&self) -> LiveTracks {
-        LiveTracks::of(self)
+        LiveTracks::of_recording(self)
     }
 
     /// The windows that these tracks, empty until now, make of the recording.
@@ -43,8 +43,7 @@ impl Recording {
     pub fn observe_each(&self, mut tracks: LiveTracks, mut each: impl FnMut(Window)) -> ObservedRecording {
         let mut misfits = Vec::new();
         for &frame in self.frames() {
-            let rows = self.at(frame).iter();
-            let rows = rows.map(|row| (row.pedestrian, row.position));
+            let rows = self.at(frame).iter().map(|row| (row.pedestrian, row.position));
             // Cannot fail: the invariants of a recording exclude every error of live tracks.
             if let Ok(Some(window)) = tracks.push(frame, rows) {
                 each(window);
@@ -76,8 +75,8 @@ impl Recording {
     }
 
     /// The window with the futures of its pedestrians tracked for all 20 steps; `None` if there are none.
-    pub(crate) fn with_future(&self, window: &Window, futures: &Futures<'_>) -> Option<Window> {
-        let future = futures.of(window);
+    pub(crate) fn with_future(&self, window: &Window, futures: &TruePaths<'_>) -> Option<Window> {
+        let future = futures.after(window);
         let is_known = |i: usize| window.quality(i).is_whole() && future[i].len() == HORIZON;
         let scored = window.filter_pedestrians(is_known)?;
         let (first, step) = (window.start_frame(), window.frame_step());

@@ -4,8 +4,20 @@ use std::fmt;
 use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
+use thiserror::Error;
 
-use crate::error::DataError;
+/// A text cannot name a scene.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
+pub enum SceneNameError {
+    #[error("scene is empty; name the camera that each row is from")]
+    Empty,
+    #[error("scene has {found} bytes, and {} are allowed; give the camera a shorter name", SceneName::LONGEST)]
+    TooLong { found: usize },
+    #[error("scene must not hold control characters, found {found:?}; leave them out")]
+    Control { found: String },
+}
 
 /// The name of a scene, that is of a camera, in a stream of several.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -18,20 +30,15 @@ impl SceneName {
     /// A name of 1 to 64 bytes without control characters; blanks around it are removed.
     ///
     /// # Errors
-    /// [`DataError::Own`] for any other text.
-    pub fn new(text: &str) -> Result<Self, DataError> {
-        let (text, longest) = (text.trim(), Self::LONGEST);
-        let problem = if text.is_empty() {
-            "scene is empty; name the camera that each row is from".to_owned()
-        } else if text.len() > longest {
-            let found = text.len();
-            format!("scene has {found} bytes, and {longest} are allowed; give the camera a shorter name")
-        } else if text.chars().any(char::is_control) {
-            format!("scene must not hold control characters, found {text:?}; leave them out")
-        } else {
-            return Ok(Self(text.into()));
-        };
-        Err(DataError::Own { problem })
+    /// For any other text.
+    pub fn new(text: &str) -> Result<Self, SceneNameError> {
+        let text = text.trim();
+        match text.len() {
+            0 => Err(SceneNameError::Empty),
+            found if found > Self::LONGEST => Err(SceneNameError::TooLong { found }),
+            _ if text.chars().any(char::is_control) => Err(SceneNameError::Control { found: text.to_owned() }),
+            _ => Ok(Self(text.into())),
+        }
     }
 
     /// The name.

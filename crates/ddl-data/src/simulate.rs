@@ -31,8 +31,7 @@ const STEPS: i64 = 450;
 
 /// Three minutes of each scene. The same seed gives the same bytes.
 pub(crate) fn recordings(seed: u64) -> Vec<Recording> {
-    let scenes = (0..).zip(SCENES);
-    let recordings = scenes.map(|(stream, (name, layout))| {
+    let recordings = (0..).zip(SCENES).map(|(stream, (name, layout))| {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(stream);
         let observations = engine::run(&layout(), STEPS, &mut rng);

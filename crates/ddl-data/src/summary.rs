@@ -120,9 +120,7 @@ impl Summary {
 
 impl Recording {
     fn unseen(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> f64 {
-        let Some(spacing) = self.usual_spacing() else {
-            return 0.0;
-        };
+        let Some(spacing) = self.usual_spacing() else { return 0.0 };
         let span = |track: &Vec<&Observation>| (track[track.len() - 1].frame - track[0].frame) as f64;
         let expected: f64 = tracks.values().map(|track| 1.0 + (span(track) / spacing as f64).round()).sum();
         (1.0 - self.observations().len() as f64 / expected).max(0.0)
@@ -130,9 +128,7 @@ impl Recording {
 
     /// Median deviation of the time between two rows of a pedestrian from its median, in ticks.
     fn jitter(&self) -> i64 {
-        let Some(spacing) = self.usual_spacing() else {
-            return 0;
-        };
+        let Some(spacing) = self.usual_spacing() else { return 0 };
         let off = self.differences().into_iter().map(|difference| (difference - spacing).abs());
         let mut off: Vec<i64> = off.filter(|off| 2 * off < spacing).collect();
         off.sort_unstable();
@@ -152,8 +148,9 @@ impl Recording {
         let [low, high] = self.corners();
         let (first_frame, last_frame) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
         let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
-        let pairs = tracks.values().flat_map(|track| track.windows(2));
-        let gaps: Vec<Gap> = pairs
+        let gaps: Vec<Gap> = tracks
+            .values()
+            .flat_map(|track| track.windows(2))
             .filter(|pair| {
                 let apart = pair[1].frame - pair[0].frame;
                 apart > step && 2 * apart > 3 * spacing
@@ -166,8 +163,7 @@ impl Recording {
             .collect();
         let futures = self.futures();
         let (mut to_forecast, mut seen_whole, mut windows, mut to_learn_from) = (0, 0, 0, 0);
-        let tracks_so_far = self.live_tracks().with_completeness(Completeness::Partial);
-        let observed = self.observe_each(tracks_so_far, |window| {
+        let observed = self.observe_each(self.live_tracks().with_completeness(Completeness::Partial), |window| {
             to_forecast += window.len();
             seen_whole += (0..window.len()).filter(|&i| window.quality(i).is_whole()).count();
             if let Some(whole) = self.with_future(&window, &futures) {

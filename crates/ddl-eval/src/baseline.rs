@@ -79,8 +79,7 @@ mod tests {
             let rows = measure(&conditions, &windows).unwrap();
             assert_eq!(rows[0].conditions.forecaster, "constant velocity (last step)");
             assert!(rows[0].scores.min_fde < 1e-9);
-            let seeded = rows.iter().filter_map(|row| row.conditions.seed).collect();
-            (rows.len(), seeded)
+            (rows.len(), rows.iter().filter_map(|row| row.conditions.seed).collect())
         };
         assert_eq!(kinds(Protocol::Published), (6, vec![1]));
         assert_eq!(kinds(Protocol::Fair), (5, vec![1]));

@@ -42,7 +42,7 @@ pub enum WindowProblem {
 
 impl EvaluationError {
     /// A problem of one window.
-    pub fn of(window: &Window, problem: WindowProblem) -> Self {
+    pub fn in_window(window: &Window, problem: WindowProblem) -> Self {
         Self::Window { recording: window.recording().to_owned(), start_frame: window.start_frame(), problem }
     }
 
@@ -55,7 +55,7 @@ impl EvaluationError {
         if expected == found {
             return Ok(());
         }
-        Err(Self::of(window, WindowProblem::Pedestrians { expected, found }))
+        Err(Self::in_window(window, WindowProblem::Pedestrians { expected, found }))
     }
 
     /// Checks that there is one forecast for each window.

@@ -22,6 +22,7 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 
 use ddl_core::Window;
+use ddl_data::DataError;
 
 pub use error::ExternalError;
 pub use matched::{Coverage, Matched};
@@ -35,10 +36,9 @@ use expected::ExpectedForecasts;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ExternalFormat {
-    /// A JSON object for each pedestrian of a window, as [`write_forecasts`] and `ddl forecast --format jsonl` write
-    /// it.
+    /// A JSON object for each pedestrian of a window, as [`write_forecasts`] and the program write it.
     JsonLines,
-    /// A comma-separated table with a header and a row for each position, as `ddl forecast` writes it.
+    /// A comma-separated table with a header and a row for each position, as the program writes it.
     Table,
 }
 
@@ -63,11 +63,10 @@ pub fn read(
     windows: &[Window],
     coverage: Coverage,
 ) -> Result<Matched, ExternalError> {
-    let file = File::open(path).map_err(|source| ExternalError::File { path: path.to_owned(), source })?;
+    let file = File::open(path).map_err(|source| DataError::Read { path: path.to_owned(), source })?;
     let origin = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let reader = BufReader::with_capacity(1 << 20, file);
-    let mut matched = read_from(reader, &origin, format, windows, coverage)?;
+    let mut matched = read_from(BufReader::with_capacity(1 << 20, file), &origin, format, windows, coverage)?;
     matched.file = name.into_owned();
     Ok(matched)
 }
@@ -84,7 +83,7 @@ pub fn read_from(
     coverage: Coverage,
 ) -> Result<Matched, ExternalError> {
     let mut expected = ExpectedForecasts::of(windows, origin)?;
-    let lines = lines::Lines::new(reader, origin);
+    let lines = lines::lines_of(reader, origin);
     match format {
         ExternalFormat::JsonLines => json_lines::read(lines, &mut expected),
         ExternalFormat::Table => table::read(lines, &mut expected),

@@ -5,8 +5,7 @@ use ddl_core::{Forecast, HORIZON, OBSERVED, PedestrianId, Position, WINDOW, Wind
 /// Each pedestrian stands at `starts[i]` while observed, then walks `steps[i]` per frame.
 pub(crate) fn window(starts: &[Position], steps: &[Position]) -> Window {
     let tracks = starts.iter().zip(steps).map(|(start, step)| {
-        let frame = |t: usize| at(*start, *step, (t + 1).saturating_sub(OBSERVED) as f64);
-        (0..WINDOW).map(frame).collect()
+        (0..WINDOW).map(|t: usize| at(*start, *step, (t + 1).saturating_sub(OBSERVED) as f64)).collect()
     });
     of_tracks(tracks.collect())
 }
@@ -27,8 +26,7 @@ pub(crate) fn walk(start: Position, step: Position) -> Vec<Position> {
 }
 
 pub(crate) fn forecast(pedestrians: usize, hypotheses: &[Vec<Position>]) -> Forecast {
-    let k = hypotheses.len() / pedestrians;
-    Forecast::with_equal_weights(pedestrians, k, hypotheses.concat()).unwrap()
+    Forecast::with_equal_weights(pedestrians, hypotheses.len() / pedestrians, hypotheses.concat()).unwrap()
 }
 
 fn at(start: Position, step: Position, t: f64) -> Position {

@@ -93,8 +93,7 @@ mod tests {
         for frame in [OBSERVED, WINDOW - 1] {
             let named = find(&Compares { frame }, &three).unwrap().unwrap();
             assert_eq!(named, format!("pedestrian 1 was moved at frame {}", frame + 1));
-            let all = find(&Peeks { frame }, &three).unwrap().unwrap();
-            assert_eq!(all, "every future position was moved");
+            assert_eq!(find(&Peeks { frame }, &three).unwrap().unwrap(), "every future position was moved");
         }
         let apart = window(&[still, still], &[still, [0.1, 0.0]]);
         let shown = find(&Compares { frame: OBSERVED }, &apart).unwrap().unwrap();

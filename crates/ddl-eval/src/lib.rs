@@ -2,10 +2,10 @@
 //!
 //! ## Forecasts of other programs
 //!
-//! [`external::read`] reads the file of another program and [`external::measure`] scores it; `ddl evaluate --forecasts`
-//! does so for a fold, and `docs/your-model.md` describes the files. A model that certifies its hypotheses passes the
-//! results with [`Forecast::with_certified`](ddl_core::Forecast::with_certified); the share of certified hypotheses is
-//! then scored too.
+//! [`external::read`] reads the file of another program and [`external::measure`] scores it; `docs/your-model.md`
+//! describes the files. A model that certifies its hypotheses passes the results with
+//! [`Forecast::with_certified`](ddl_core::Forecast::with_certified); the share of certified hypotheses is then scored
+//! too.
 //!
 //! ## Cost
 //!

@@ -19,7 +19,7 @@ impl<'a> ScoredWindow<'a> {
     /// The window has no future, or the forecast has another number of pedestrians.
     pub fn new(window: &'a Window, forecast: &'a Forecast) -> Result<Self, EvaluationError> {
         if !window.has_future() {
-            return Err(EvaluationError::of(window, WindowProblem::NoFuture));
+            return Err(EvaluationError::in_window(window, WindowProblem::NoFuture));
         }
         EvaluationError::unless_same_pedestrians(window, forecast.pedestrians())?;
         Ok(Self { window, forecast, full_window: window })
@@ -34,7 +34,7 @@ impl<'a> ScoredWindow<'a> {
         let window = self.window;
         let same_frames = window.recording() == full.recording() && window.frames() == full.frames();
         if !same_frames || indices_in_full(window, full).is_none() {
-            return Err(EvaluationError::of(window, WindowProblem::FullWindow));
+            return Err(EvaluationError::in_window(window, WindowProblem::FullWindow));
         }
         Ok(Self { full_window: full, ..self })
     }
@@ -98,6 +98,5 @@ fn index_of(window: &Window, pedestrian: PedestrianId) -> Option<usize> {
 }
 
 pub(crate) fn indices_in_full(window: &Window, full: &Window) -> Option<Vec<usize>> {
-    let pedestrians = window.pedestrians().iter();
-    pedestrians.map(|&p| index_of(full, p)).collect()
+    window.pedestrians().iter().map(|&p| index_of(full, p)).collect()
 }

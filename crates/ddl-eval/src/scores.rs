@@ -9,7 +9,7 @@ use crate::error::{EvaluationError, WindowProblem};
 use crate::metric::amd::amv;
 use crate::metric::deployable::DeployableErrors;
 use crate::metric::displacement::DisplacementErrors;
-use crate::metric::gaussian::Covariance;
+use crate::metric::gaussian::PlaneCovariance;
 use crate::metric::joint::{JointScores, SceneFutures};
 use crate::metric::stability::{self, RolloutStability, StabilityScores};
 use crate::pedestrian_scores::PedestrianScores;
@@ -158,8 +158,7 @@ impl Scores {
             scenes.iter().map(sum).sum::<f64>() / total
         };
         let share = |holds: fn(&PedestrianScores) -> bool| {
-            let scored = scenes.iter().flat_map(|s| &s.pedestrians);
-            scored.filter(|pedestrian| holds(pedestrian)).count() as f64 / total
+            scenes.iter().flat_map(|s| &s.pedestrians).filter(|pedestrian| holds(pedestrian)).count() as f64 / total
         };
         let each = || scenes.iter().flat_map(|s| &s.pedestrians);
         let futures = scenes.iter().map(|s| (s.pedestrians.len(), s.joint, s.futures.as_ref()));
@@ -222,13 +221,12 @@ fn of_all<const N: usize>(
     Some(sum.map(|sum| sum / total))
 }
 
-fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> Covariance {
+fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> PlaneCovariance {
     let of_scene = |s: &SceneScores| {
         let covariances = s.pedestrians.iter().filter_map(|w| w.distribution);
-        covariances.fold(Covariance::default(), |sum, d| sum.plus(d.covariance))
+        covariances.fold(PlaneCovariance::default(), |sum, d| sum.plus(d.covariance))
     };
-    let sum = scenes.iter().map(of_scene);
-    sum.fold(Covariance::default(), Covariance::plus).scaled(1.0 / pedestrians)
+    scenes.iter().map(of_scene).fold(PlaneCovariance::default(), PlaneCovariance::plus).scaled(1.0 / pedestrians)
 }
 
 fn check_alike(window: &Window, forecast: &Forecast, first: &Forecast) -> Result<(), EvaluationError> {
@@ -242,7 +240,7 @@ fn check_alike(window: &Window, forecast: &Forecast, first: &Forecast) -> Result
     } else {
         return Ok(());
     };
-    Err(EvaluationError::of(window, problem))
+    Err(EvaluationError::in_window(window, problem))
 }
 
 struct SceneScores {

@@ -1,5 +1,6 @@
 //! From a message to the pedestrians in it.
 
+use crate::error::LogProblem;
 use ddl_data::FrameReader;
 use ddl_ros::msg::{Detection3DArray, Header, People, Point, Time, TrackedPersons};
 use ddl_ros::{Message as _, Observed, RosError, SeenPedestrian, read_tracks};
@@ -31,7 +32,7 @@ pub(crate) fn type_name(channel: &Channel<'_>) -> String {
 }
 
 /// The pedestrians; `None` if the message is of a kind without tracks.
-pub(crate) fn decode(message: &Message<'_>) -> Result<Option<Decoded>, String> {
+pub(crate) fn decode(message: &Message<'_>) -> Result<Option<Decoded>, LogProblem> {
     let (bytes, name) = (&*message.data, type_name(&message.channel));
     let layout = TYPES.iter().find(|[known, ..]| *known == name);
     match (&*message.channel.message_encoding, layout) {
@@ -43,7 +44,7 @@ pub(crate) fn decode(message: &Message<'_>) -> Result<Option<Decoded>, String> {
             }
             read => read.map(|observed| Some((Some(observed.header.stamp.microseconds()), observed))),
         }
-        .map_err(|error| error.to_string()),
+        .map_err(LogProblem::from),
         ("json", Some(layout)) => of_json(bytes, layout).map(Some),
         ("json", None) => of_lines(bytes),
         _ => Ok(None),
@@ -51,9 +52,9 @@ pub(crate) fn decode(message: &Message<'_>) -> Result<Option<Decoded>, String> {
 }
 
 /// A ROS message as JSON; of its fields those that are needed.
-fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decoded, String> {
-    let message: Value = serde_json::from_slice(bytes).map_err(|error| error.to_string())?;
-    let items = message[*list].as_array().ok_or(format!("there is no list `{list}`"))?;
+fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decoded, LogProblem> {
+    let message: Value = serde_json::from_slice(bytes)?;
+    let items = message[*list].as_array().ok_or_else(|| format!("there is no list `{list}`"))?;
     let frame_id = |of: &Value| of["header"]["frame_id"].as_str().unwrap_or_default().to_owned();
     let seen = items.iter().map(|item| {
         let is_occluded = item["is_occluded"] == true;
@@ -65,8 +66,7 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
         let text = |value: &Value| value.as_str().map_or_else(|| value.to_string(), str::to_owned);
         let class = |result: &Value| result.pointer("/hypothesis/class_id").filter(|class| !class.is_null()).map(text);
         let score = |result: &&Value| result["hypothesis"]["score"].as_f64().unwrap_or(0.0);
-        let results = item["results"].as_array().into_iter().flatten();
-        let likeliest = results.max_by(|a, b| score(a).total_cmp(&score(b)));
+        let likeliest = item["results"].as_array().into_iter().flatten().max_by(|a, b| score(a).total_cmp(&score(b)));
         Some(SeenPedestrian {
             name: name.map(text)?,
             class: likeliest.and_then(class).unwrap_or_default(),
@@ -75,41 +75,38 @@ fn of_json(bytes: &[u8], [_, list, name, position]: &[&str; 4]) -> Result<Decode
             is_occluded,
         })
     });
-    let missing = format!("each of `{list}` needs {name}, and x and y of {position} (m)");
-    let pedestrians = seen.collect::<Option<_>>().ok_or(missing)?;
+    let missing = || format!("each of `{list}` needs {name}, and x and y of {position} (m)");
+    let pedestrians = seen.collect::<Option<_>>().ok_or_else(missing)?;
     let stamp = &message["header"]["stamp"];
     // As ROS 2, Foxglove and ROS 1 call them.
     let seconds = part_of(stamp, &["sec", "secs"])?;
     let nanoseconds = part_of(stamp, &["nanosec", "nsec", "nsecs"])?;
     let microseconds = seconds.saturating_mul(1_000_000).saturating_add(nanoseconds / 1000);
     let header = Header { stamp: Time::of_microseconds(microseconds), frame_id: frame_id(&message) };
-    let time = (microseconds != 0).then_some(microseconds);
-    Ok((time, Observed::new(header, pedestrians)))
+    Ok(((microseconds != 0).then_some(microseconds), Observed::new(header, pedestrians)))
 }
 
 /// The whole number with one of these names, which may be a text as protobuf writes it; 0 without any.
-fn part_of(stamp: &Value, names: &[&str]) -> Result<i64, String> {
-    let Some((name, value)) = names.iter().find_map(|name| Some((name, stamp.get(name)?))) else {
-        return Ok(0);
-    };
+fn part_of(stamp: &Value, names: &[&str]) -> Result<i64, LogProblem> {
+    let Some((name, value)) = names.iter().find_map(|name| Some((name, stamp.get(name)?))) else { return Ok(0) };
     let of_text = value.as_str().and_then(|text| text.parse().ok());
     let of_float = value.as_f64().filter(|number| number.fract() == 0.0);
     let number = value.as_i64().or(of_text).or(of_float.map(|number| number as i64));
-    number.ok_or_else(|| format!("header.stamp.{name} is {value}; it must be a whole number"))
+    number.ok_or_else(|| format!("header.stamp.{name} is {value}; it must be a whole number").into())
 }
 
-/// JSON as `ddl forecast -` reads it, one or several lines of a moment. A frame is no time.
-fn of_lines(bytes: &[u8]) -> Result<Option<Decoded>, String> {
+/// JSON as of a stream of tracks, one or several lines of a moment. A frame is no time.
+fn of_lines(bytes: &[u8]) -> Result<Option<Decoded>, LogProblem> {
     if !bytes.trim_ascii_start().starts_with(b"{") || !bytes.windows(TRACK.len()).any(|part| part == TRACK) {
         return Ok(None);
     }
     let mut reader = FrameReader::new(bytes, "the message");
-    let mut next = || reader.next_frame().map_err(|error| error.to_string());
-    let (Some(frame), None) = (next()?, next()?) else {
-        return Err("a message holds the tracks of one moment".to_owned());
+    let (Some(frame), None) = (reader.next_frame()?, reader.next_frame()?) else {
+        return Err("a message holds the tracks of one moment".into());
     };
     if let Some(scene) = &frame.scene {
-        return Err(format!("the track names the scene {scene}; record each scene on a topic of its own, without it"));
+        let advice = "record each scene on a topic of its own, without it";
+        return Err(format!("the track names the scene {scene}; {advice}").into());
     }
     let seen = frame.pedestrians.iter().map(|(id, position)| SeenPedestrian {
         name: frame.names.of(*id).to_string(),

@@ -1,6 +1,6 @@
 //! The files of a log.
 
-use crate::error::LogError;
+use crate::error::{LogError, LogProblem};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ fn is_sqlite(path: &Path) -> bool {
 }
 
 /// The files that the metadata of a recording lists, in their order.
-fn listed(folder: &Path) -> Result<Vec<PathBuf>, String> {
+fn listed(folder: &Path) -> Result<Vec<PathBuf>, LogProblem> {
     let wrong = |error: &dyn std::error::Error| format!("{METADATA}: {error}");
     let text = std::fs::read_to_string(folder.join(METADATA)).map_err(|error| wrong(&error))?;
     let list: Value = serde_saphyr::from_str(&text).map_err(|error| wrong(&error))?;
@@ -36,29 +36,31 @@ fn listed(folder: &Path) -> Result<Vec<PathBuf>, String> {
         let missing = || format!("{METADATA} lists {name}, which is missing; bring it back, or name one of the files");
         file.exists().then_some(file).ok_or_else(missing)
     };
-    names.map(file).collect()
+    Ok(names.map(file).collect::<Result<_, _>>()?)
 }
 
 /// The MCAP files of a log, in order, and a note on those in its folder that do not belong to it.
 pub(crate) fn files(path: &Path) -> Result<(Vec<PathBuf>, Option<String>), LogError> {
-    let wrong = |problem: String| LogError::at(path.display())(problem);
+    files_of(path).map_err(|problem| problem.at(path.display()))
+}
+
+fn files_of(path: &Path) -> Result<(Vec<PathBuf>, Option<String>), LogProblem> {
     let (mut files, mut others) = (vec![path.to_owned()], Vec::new());
     if path.is_dir() {
-        files = listed(path).map_err(wrong)?;
-        let entries = path.read_dir().map_err(|error| wrong(error.to_string()))?;
-        others = entries.flatten().map(|entry| entry.path()).collect();
+        files = listed(path)?;
+        others = path.read_dir()?.flatten().map(|entry| entry.path()).collect();
         others.retain(|file| is_mcap(file) && !files.contains(file));
     }
     let sqlite = files.iter().any(|file| is_sqlite(file));
     files.retain(|file| is_mcap(file));
     if files.is_empty() {
-        return Err(wrong(if sqlite {
+        return Err(if sqlite {
             "a bag of SQLite; write it as MCAP first (pip install rosbags; rosbags-convert --src BAG --dst NEW \
              --dst-storage mcap)"
-                .to_owned()
+                .into()
         } else {
-            format!("{METADATA} lists no file that ends in .mcap; unpack files that are compressed as a whole")
-        }));
+            format!("{METADATA} lists no file that ends in .mcap; unpack files that are compressed as a whole").into()
+        });
     }
     let note = others.first().map(|other| {
         let (count, name) = (others.len(), other.display());

@@ -7,7 +7,7 @@ mod messages;
 mod tracks;
 mod write;
 
-pub use error::LogError;
+pub use error::{LogError, LogProblem};
 pub use files::{is_log, is_mcap};
 pub use tracks::{LoggedTracks, TrackTopic, read_log};
 pub use write::ForecastLog;

@@ -1,6 +1,7 @@
 //! The messages of a file, one after another. Readers of messages in the crate `mcap` panic at a short attachment, and
 //! reserve memory for the length that a text is said to have; here no length is believed before its bytes are there.
 
+use crate::error::LogProblem;
 use mcap::read::ChannelAccumulator;
 use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
@@ -28,10 +29,10 @@ pub(crate) struct Messages {
 }
 
 impl Messages {
-    pub(crate) fn open(path: &Path) -> Result<Self, String> {
+    pub(crate) fn open(path: &Path) -> Result<Self, LogProblem> {
         let options = LinearReaderOptions::default().with_emit_chunks(true);
         Ok(Self {
-            source: File::open(path).map_err(text)?,
+            source: File::open(path)?,
             reader: LinearReader::new_with_options(options.with_record_length_limit(MOST)),
             channels: ChannelAccumulator::default(),
             chunk: Vec::new(),
@@ -41,7 +42,7 @@ impl Messages {
     }
 
     /// The next message; `None` at the end.
-    pub(crate) fn next(&mut self) -> Result<Option<Message<'static>>, String> {
+    pub(crate) fn next(&mut self) -> Result<Option<Message<'static>>, LogProblem> {
         loop {
             let mut message = None;
             if let Some((head, rest)) = self.chunk[self.taken..].split_first_chunk::<9>() {
@@ -51,15 +52,14 @@ impl Messages {
                 self.taken += head.len() + data.len();
                 message = message_of(&mut self.channels, opcode, data)?;
             } else if self.taken < self.chunk.len() {
-                return Err("a record goes beyond the end of its chunk".to_owned());
+                return Err("a record goes beyond the end of its chunk".into());
             } else {
                 match self.reader.next_event() {
                     None | Some(Ok(LinearReadEvent::Record { opcode: op::DATA_END, .. })) => return Ok(None),
                     Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
-                        let buffer = self.reader.insert(wanted.min(AT_ONCE));
-                        match self.source.read(buffer) {
+                        match self.source.read(self.reader.insert(wanted.min(AT_ONCE))) {
                             Err(error) if error.kind() == ErrorKind::Interrupted => {}
-                            read => self.reader.notify_read(read.map_err(text)?),
+                            read => self.reader.notify_read(read?),
                         }
                     }
                     Some(Ok(LinearReadEvent::Record { opcode: op::CHUNK, data })) => {
@@ -72,8 +72,8 @@ impl Messages {
                         self.is_cut = true;
                         return Ok(None);
                     }
-                    Some(Err(McapError::BadMagic)) => return Err("the file is not MCAP".to_owned()),
-                    Some(Err(error)) => return Err(error.to_string()),
+                    Some(Err(McapError::BadMagic)) => return Err("the file is not MCAP".into()),
+                    Some(Err(error)) => return Err(error.into()),
                 }
             }
             if message.is_some() {
@@ -88,7 +88,7 @@ fn message_of(
     channels: &mut ChannelAccumulator<'static>,
     opcode: u8,
     data: &[u8],
-) -> Result<Option<Message<'static>>, String> {
+) -> Result<Option<Message<'static>>, LogProblem> {
     let fits = match opcode {
         op::SCHEMA => counted(data, 2, 3).is_some(),
         op::CHANNEL => counted(data, 4, 3).is_some_and(|parts| counted(parts[2], 0, usize::MAX).is_some()),
@@ -96,11 +96,11 @@ fn message_of(
         _ => return Ok(None),
     };
     if !fits {
-        return Err("a record is shorter than it says".to_owned());
+        return Err("a record is shorter than it says".into());
     }
-    match parse_record(opcode, data).map_err(text)? {
-        Record::Schema { header, data } => channels.add_schema_from_slice(header, &data).map_err(text)?,
-        Record::Channel(channel) => channels.add_channel(channel).map_err(text)?,
+    match parse_record(opcode, data)? {
+        Record::Schema { header, data } => channels.add_schema_from_slice(header, &data)?,
+        Record::Channel(channel) => channels.add_channel(channel)?,
         Record::Message { header, data } => {
             let channel = channels.get(header.channel_id).ok_or("a message of no known channel")?;
             return Ok(Some(Message {
@@ -129,31 +129,20 @@ fn counted(data: &[u8], start: usize, most: usize) -> Option<Vec<&[u8]>> {
 }
 
 /// The records of a chunk.
-fn unpacked(chunk: &[u8]) -> Result<Vec<u8>, String> {
+fn unpacked(chunk: &[u8]) -> Result<Vec<u8>, LogProblem> {
     let parsed = counted(chunk, CHUNK_HEAD, 1).and_then(|_| parse_record(op::CHUNK, chunk).ok());
-    let Some(Record::Chunk { header, data }) = parsed else {
-        return Err("a chunk is shorter than it says".to_owned());
-    };
+    let Some(Record::Chunk { header, data }) = parsed else { return Err("a chunk is shorter than it says".into()) };
     let packed: Box<dyn Read> = match header.compression.as_str() {
         "" => Box::new(&*data),
-        "zstd" => Box::new(ruzstd::decoding::StreamingDecoder::new(&*data).map_err(damaged)?),
+        "zstd" => Box::new(ruzstd::decoding::StreamingDecoder::new(&*data).map_err(LogProblem::of_chunk)?),
         "lz4" => Box::new(lz4_flex::frame::FrameDecoder::new(&*data)),
-        other => return Err(format!("chunks are compressed by {other:?}; zstd and lz4 are read")),
+        other => return Err(format!("chunks are compressed by {other:?}; zstd and lz4 are read").into()),
     };
     let mut records = Vec::new();
-    let read = packed.take(MOST as u64).read_to_end(&mut records);
-    read.map_err(damaged)?;
+    packed.take(MOST as u64).read_to_end(&mut records).map_err(LogProblem::of_chunk)?;
     let crc = header.uncompressed_crc;
     if records.len() as u64 != header.uncompressed_size || (crc != 0 && crc32fast::hash(&records) != crc) {
-        return Err(damaged(format!("its checksum or size is wrong, or it is larger than {MOST} bytes")));
+        return Err(LogProblem::Chunk(format!("its checksum or size is wrong, or it is larger than {MOST} bytes")));
     }
     Ok(records)
-}
-
-fn damaged(error: impl std::fmt::Display) -> String {
-    format!("a chunk is damaged: {error}")
-}
-
-fn text(error: impl std::fmt::Display) -> String {
-    error.to_string()
 }

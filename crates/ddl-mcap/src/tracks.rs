@@ -1,10 +1,10 @@
 //! The tracks of a topic, as a recording.
 
 use crate::decode::{Decoded, READ, decode, type_name};
-use crate::error::LogError;
+use crate::error::{LogError, LogProblem};
 use crate::files::files;
 use crate::messages::Messages;
-use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, Numbering, PedestrianId};
+use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, Numbering, PedestrianId, Setting};
 use ddl_data::{LiveError, LiveTracks, Observation, Recording, RecordingError, TimeUnit, escaped};
 use mcap::Channel;
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,22 +48,21 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
     let (mut topics, mut notes) = (BTreeMap::<String, Topic>::new(), Vec::from_iter(note));
     for file in &files {
         let (file_name, mut time) = (file.display(), 0.0);
-        let mut messages = Messages::open(file).map_err(LogError::at(&file_name))?;
-        while let Some(message) = messages.next().map_err(|problem| {
-            let place = format!("{file_name}, after {time:.6} s");
-            LogError::at(place)(problem)
-        })? {
+        let mut messages = Messages::open(file).map_err(|problem| problem.at(&file_name))?;
+        while let Some(message) =
+            messages.next().map_err(|problem| problem.at(format!("{file_name}, after {time:.6} s")))?
+        {
             time = message.log_time as f64 / 1e9;
             let channel = &message.channel;
             let topic = topics.entry(channel.topic.clone()).or_insert_with(|| Topic::of(channel));
             topic.messages += 1;
             if asked.is_none_or(|asked| asked == channel.topic) {
                 let decoded = decode(&message);
-                let added = decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep));
-                added.map_err(|problem| {
-                    let hint = asked.map_or("; --topic reads another topic", |_| "");
+                decoded.and_then(|decoded| topic.add(decoded, message.log_time, &keep)).map_err(|problem| {
+                    let hint = || format!("{problem}; {} reads another topic", Setting::Topic).into();
+                    let problem = if asked.is_none() { hint() } else { problem };
                     let (topic, number) = (&channel.topic, message.sequence);
-                    LogError::at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))(problem + hint)
+                    problem.at(format!("{file_name}, topic {topic}, message {number} at {time:.6} s"))
                 })?;
             }
         }
@@ -71,15 +70,16 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
             notes.push(format!("{file_name} is cut off: what is whole was read, until {time:.6} s"));
         }
     }
-    let (name, topic) = choose(topics, asked).map_err(LogError::at(path.display()))?;
-    let words = topic.words(&name);
+    let (name, topic) = choose(topics, asked).map_err(|problem| problem.at(path.display()))?;
+    let words = topic.description(&name);
     if topic.rows.is_empty() {
-        let problem = format!("{words}; no row is left, and --keep class=NAME chooses another class");
-        return Err(LogError::at(path.display())(problem));
+        let keep = Setting::Keep.to("class=NAME");
+        let problem = LogProblem::from(format!("{words}; no row is left, and {keep} chooses another class"));
+        return Err(problem.at(path.display()));
     }
     notes.insert(0, words);
     let frame_id = topic.frame_id.clone().filter(|frame_id| !frame_id.is_empty());
-    let recording = topic.recording().map_err(LogError::at(format!("{}, topic {name}", path.display())))?;
+    let recording = topic.recording().map_err(|problem| problem.at(format!("{}, topic {name}", path.display())))?;
     Ok(LoggedTracks {
         recording: recording.with_notes(notes.iter().map(|note| escaped(note)).collect()),
         topic: TrackTopic { files, name, frame_id },
@@ -87,7 +87,7 @@ pub fn read_log(path: &Path, asked: Option<&str>, keep: impl Fn(&str) -> bool) -
 }
 
 /// The topic that was asked for, or the one with tracks.
-fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(String, Topic), String> {
+fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(String, Topic), LogProblem> {
     let listed = |wanted: fn(&Topic) -> bool| {
         let some = topics.iter().filter(|(_, topic)| wanted(topic)).take(MOST_LISTED);
         let some = some.map(|(name, topic)| format!("{name} ({}, {} messages)", topic.kind, topic.messages));
@@ -97,12 +97,12 @@ fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(S
     let mut found = topics.iter().filter(|(_, topic)| holds_tracks(topic)).map(|(name, _)| name.clone());
     match (asked, found.next(), found.next()) {
         (_, Some(name), None) => Ok(topics.remove_entry(&name).unwrap_or_default()),
-        (None, Some(_), _) => Err(format!("choose a topic by --topic: {}", listed(holds_tracks))),
-        _ if topics.is_empty() => Err("there is no message; is the file empty or cut off?".to_owned()),
-        (None, None, _) => Err(format!("no tracks in {}; read is {READ}", listed(|_| true))),
+        (None, Some(_), _) => Err(format!("choose a topic by {}: {}", Setting::Topic, listed(holds_tracks)).into()),
+        _ if topics.is_empty() => Err("there is no message; is the file empty or cut off?".into()),
+        (None, None, _) => Err(format!("no tracks in {}; read is {READ}", listed(|_| true)).into()),
         (Some(asked), ..) => Err(match topics.get(asked) {
-            Some(topic) => format!("topic {asked} holds no tracks but {}; read is {READ}", topic.kind),
-            None => format!("no message of topic {asked}; there are {}", listed(|_| true)),
+            Some(topic) => format!("topic {asked} holds no tracks but {}; read is {READ}", topic.kind).into(),
+            None => format!("no message of topic {asked}; there are {}", listed(|_| true)).into(),
         }),
     }
 }
@@ -130,7 +130,7 @@ impl Topic {
         Self { kind: format!("{} as {}", type_name(channel), channel.message_encoding), ..Self::default() }
     }
 
-    fn words(&self, name: &str) -> String {
+    fn description(&self, name: &str) -> String {
         let (kind, messages, frame_id) = (&self.kind, self.messages, self.frame_id.as_deref().unwrap_or_default());
         let logged = if self.is_logged == Some(true) { "of the log" } else { "of the messages" };
         let left_out = self.left_out.iter().map(|(what, count)| format!("; {count} rows left out: {what}"));
@@ -147,17 +147,16 @@ impl Topic {
     }
 
     /// Adds the rows of a message.
-    fn add(&mut self, decoded: Option<Decoded>, log_time: u64, keep: impl Fn(&str) -> bool) -> Result<(), String> {
-        let Some((time, mut observed)) = decoded else {
-            return Ok(());
-        };
+    fn add(&mut self, decoded: Option<Decoded>, log_time: u64, keep: impl Fn(&str) -> bool) -> Result<(), LogProblem> {
+        let Some((time, mut observed)) = decoded else { return Ok(()) };
         if *self.is_logged.get_or_insert(time.is_none()) != time.is_none() {
-            return Err("header.stamp is 0 in some messages and a time in others".to_owned());
+            return Err("header.stamp is 0 in some messages and a time in others".into());
         }
         let frame_id = self.frame_id.get_or_insert_with(|| observed.header.frame_id.clone());
         if *frame_id != observed.header.frame_id {
             let other = &observed.header.frame_id;
-            return Err(format!("positions in the frame {other:?}, but before in {frame_id:?}; record them in one"));
+            let before = format!("positions in the frame {other:?}, but before in {frame_id:?}");
+            return Err(format!("{before}; record them in one").into());
         }
         for (reason, count) in &observed.left_out {
             *self.left_out.entry((*reason).to_owned()).or_default() += count;
@@ -179,7 +178,7 @@ impl Topic {
         for (id, position) in seen {
             let name = names.of(id).to_string();
             if name.len() > LONGEST_NAME || position.iter().any(|c| c.abs() > COORDINATE_LIMIT) {
-                return Err(format!("pedestrian {name} at {position:?}: beyond 256 bytes or 1e7 m"));
+                return Err(format!("pedestrian {name} at {position:?}: beyond 256 bytes or 1e7 m").into());
             }
             if id.0 >= FRAME_LIMIT {
                 self.words.entry(id).or_insert_with(|| name.into());
@@ -189,14 +188,14 @@ impl Topic {
         Ok(())
     }
 
-    fn recording(self) -> Result<Recording, String> {
+    fn recording(self) -> Result<Recording, LogProblem> {
         let recording = Recording::in_usual_step("log", self.rows).map_err(|error| match error {
             RecordingError::Row(LiveError::Duplicate { pedestrian, frame }) => {
                 let name = self.words.get(&pedestrian).map_or_else(|| pedestrian.to_string(), ToString::to_string);
                 let time = frame as f64 / 1e6;
-                format!("pedestrian {name} is there twice at {time:.6} s; record one tracker to a topic")
+                format!("pedestrian {name} is there twice at {time:.6} s; record one tracker to a topic").into()
             }
-            other => other.to_string(),
+            other => LogProblem::from(other),
         });
         Ok(recording?.with_words(self.words).with_restarts(self.restarts).with_time_unit(Some(TimeUnit::Seconds)))
     }

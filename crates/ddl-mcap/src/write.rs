@@ -1,7 +1,7 @@
 //! Forecasts as MCAP.
 
 use crate::decode::decode;
-use crate::error::LogError;
+use crate::error::{LogError, LogProblem};
 use crate::messages::Messages;
 use crate::tracks::TrackTopic;
 use ddl_core::{Forecast, Window};
@@ -39,12 +39,12 @@ impl<W: Write> ForecastLog<W> {
             frame_id: tracks.and_then(|tracks| tracks.frame_id.clone()),
         };
         for file in tracks.iter().flat_map(|tracks| &tracks.files) {
-            let place = || LogError::at(file.display());
-            let mut messages = Messages::open(file).map_err(place())?;
-            while let Some(message) = messages.next().map_err(place())? {
+            let here = |problem: LogProblem| problem.at(file.display());
+            let mut messages = Messages::open(file).map_err(here)?;
+            while let Some(message) = messages.next().map_err(here)? {
                 let channel = &message.channel;
                 if tracks.is_some_and(|tracks| tracks.name == channel.topic)
-                    && let Some((time, _)) = decode(&message).map_err(place())?
+                    && let Some((time, _)) = decode(&message).map_err(here)?
                 {
                     let schema = channel.schema.as_ref();
                     let schema =
@@ -115,6 +115,5 @@ impl<W: Write> ForecastLog<W> {
 }
 
 fn nanoseconds(microseconds: i64) -> Result<u64, LogError> {
-    let time = u64::try_from(microseconds).ok().and_then(|time| time.checked_mul(1000));
-    time.ok_or(LogError::Early { microseconds })
+    u64::try_from(microseconds).ok().and_then(|time| time.checked_mul(1000)).ok_or(LogError::Early { microseconds })
 }

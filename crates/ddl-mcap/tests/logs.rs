@@ -18,9 +18,9 @@ use tempfile::TempDir;
 const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/fuzz/corpus/mcap");
 
 /// Topic, type, encoding, nanoseconds of the log, and data.
-type Entry = (String, String, String, u64, Value);
+type LoggedMessage = (String, String, String, u64, Value);
 
-fn bytes((_, _, encoding, _, data): &Entry) -> Vec<u8> {
+fn bytes((_, _, encoding, _, data): &LoggedMessage) -> Vec<u8> {
     match data {
         Value::String(text) => text.clone().into(),
         data if encoding == "cdr" => ddl_ros::write(&from_value::<People>(data.clone()).expect("people")).expect("CDR"),
@@ -28,7 +28,7 @@ fn bytes((_, _, encoding, _, data): &Entry) -> Vec<u8> {
     }
 }
 
-fn log(entries: &[Entry], options: WriteOptions) -> McapResult<Vec<u8>> {
+fn log(entries: &[LoggedMessage], options: WriteOptions) -> McapResult<Vec<u8>> {
     let mut file = Cursor::new(Vec::new());
     let mut writer = options.create(&mut file)?;
     for (entry, sequence) in entries.iter().zip(0..) {
@@ -68,7 +68,7 @@ fn rows(tracks: &LoggedTracks) -> Vec<(i64, String, f64, f64)> {
 fn messages_give_their_rows_notes_and_errors() {
     let cases: Vec<Value> = serde_json::from_str(include_str!("reference/logs.json")).unwrap();
     for mut case in cases {
-        let entries: Vec<Entry> = from_value(case["messages"].take()).unwrap();
+        let entries: Vec<LoggedMessage> = from_value(case["messages"].take()).unwrap();
         let file = match case["file"].as_str() {
             Some(name) => fs::read(format!("{CORPUS}/{name}.mcap")).unwrap(),
             None => log(&entries, WriteOptions::new()).unwrap(),
@@ -93,14 +93,14 @@ fn of_a_file_that_is_cut_off_all_that_is_whole_is_read() {
         let data = json!({"track": {"t": 100.5 + f64::from(k), "p": k, "x": 0.5, "y": 2.0}});
         from_value(json!(["/t", "", "json", 2_500_000_000_i64 * i64::from(k), data])).unwrap()
     });
-    let entries: Vec<Entry> = entries.collect();
+    let entries: Vec<LoggedMessage> = entries.collect();
     let in_chunks = WriteOptions::new().chunk_size(Some(1));
     for options in [WriteOptions::new().use_chunks(false), in_chunks.clone()] {
         let file = log(&entries, options).unwrap();
         for end in (1..=file.len()).rev().step_by(7) {
             let part = &file[..end];
             // A message ends with its data, and with it a chunk.
-            let is_whole = |entry: &&Entry| part.windows(bytes(entry).len()).any(|text| text == bytes(entry));
+            let is_whole = |entry: &&LoggedMessage| part.windows(bytes(entry).len()).any(|text| text == bytes(entry));
             let count = entries.iter().filter(is_whole).count();
             let Ok(tracks) = read(part, None) else {
                 assert_eq!(count, 0);
@@ -124,8 +124,8 @@ fn of_a_file_that_is_cut_off_all_that_is_whole_is_read() {
 fn the_files_of_a_bag_are_read_in_their_order_and_written_with_the_forecasts() {
     let cases: Vec<Value> = serde_json::from_str(include_str!("reference/logs.json")).unwrap();
     // The last kind: people in CDR, with times of their own.
-    let [first, second]: [Entry; 2] = from_value(cases[6]["messages"].clone()).unwrap();
-    let text: Entry = from_value(json!(["/text", "std_msgs/String", "json", 1, "{}"])).unwrap();
+    let [first, second]: [LoggedMessage; 2] = from_value(cases[6]["messages"].clone()).unwrap();
+    let text: LoggedMessage = from_value(json!(["/text", "std_msgs/String", "json", 1, "{}"])).unwrap();
     let (folder, options) = (TempDir::new().unwrap(), WriteOptions::new());
     let at = |name: &str| folder.path().join(name);
     fs::write(at("z.mcap"), log(&[text, first.clone()], options.clone()).unwrap()).unwrap();
@@ -147,7 +147,7 @@ fn the_files_of_a_bag_are_read_in_their_order_and_written_with_the_forecasts() {
 }
 
 /// A log holds the people of a topic, and the forecasts of a moment.
-fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&Entry; 2]) -> Result<(), Box<dyn Error>> {
+fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&LoggedMessage; 2]) -> Result<(), Box<dyn Error>> {
     let track = (0..8).map(|t| [0.5 * f64::from(t), -1.0]).collect();
     let window = &Window::new("hall", 0, 1, vec![PedestrianId(7)], vec![track])?;
     let steps = (0..24).map(|n| [3.5 + f64::from(n % 12), f64::from(n)]).collect();
@@ -178,8 +178,7 @@ fn is_written(topic: Option<&TrackTopic>, frame_id: &str, people: [&Entry; 2]) -
         let (channel, times) = (&message.channel, [message.log_time, message.publish_time]);
         let schema = channel.schema.as_ref().ok_or("no schema")?;
         let kind = json!([channel.topic, schema.name, schema.encoding, channel.message_encoding]);
-        let found = json!([kind, message.sequence, times, message.data]);
-        assert_eq!(found, *expected);
+        assert_eq!(json!([kind, message.sequence, times, message.data]), *expected);
     }
     assert_eq!(MessageStream::new(&file)?.count(), expected.len());
     Ok(())

@@ -145,7 +145,8 @@ impl Recording {
         let (fps, frame_step) = rate;
         let (columns, keep, unit) = &choice;
         let given = [columns, keep, unit].map(Option::as_deref);
-        let choice = ColumnChoice::given(given, homography.is_some()).map_err(PyValueError::new_err)?;
+        let choice = ColumnChoice::given(given, homography.is_some());
+        let choice = choice.map_err(|error| PyValueError::new_err(error.to_string()))?;
         let bytes = std::fs::read(&path).map_err(|source| {
             let path = path.clone();
             raised(ddl::DdlError::Io { path, source })

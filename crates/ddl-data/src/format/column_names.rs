@@ -1,5 +1,6 @@
 //! What the names of columns say: their role and their unit.
 
+use crate::class::{is_one_of, name_words};
 use crate::clock::TimeUnit;
 
 /// What a column holds.
@@ -94,7 +95,7 @@ pub(super) enum LengthUnit {
 pub(super) type Rest = (usize, &'static str, i64);
 
 /// A column of a header.
-pub(super) struct Named {
+pub(super) struct NamedColumn {
     pub(super) index: usize,
     pub(super) role: Role,
     pub(super) time_unit: Option<TimeUnit>,
@@ -103,7 +104,7 @@ pub(super) struct Named {
 
 impl LengthUnit {
     /// The name of the unit of which so many make a metre; `None` for metres.
-    pub(super) fn words(per_metre: f64) -> Option<&'static str> {
+    pub(super) fn name_of(per_metre: f64) -> Option<&'static str> {
         let others = &LENGTH_UNITS[1..];
         let (names, _) = others.iter().find(|(_, unit)| *unit == Self::PerMetre(per_metre))?;
         names.split(' ').nth(1)
@@ -141,13 +142,7 @@ pub(super) fn role_names() -> impl Iterator<Item = (Role, &'static str)> {
 }
 
 fn unit_of<T: Copy>(units: &[(&str, T)], name: &str) -> Option<T> {
-    let found = units.iter().find(|(names, _)| is_one_of(names, name));
-    found.map(|(_, unit)| *unit)
-}
-
-/// Whether a word is one of these, separated by blanks.
-pub(super) fn is_one_of(words: &str, word: &str) -> bool {
-    words.split(' ').any(|one| one == word)
+    units.iter().find(|(names, _)| is_one_of(names, name)).map(|(_, unit)| *unit)
 }
 
 /// The unit of a role such as `time_ms`.
@@ -162,11 +157,11 @@ pub(super) fn role_of_unit(unit: TimeUnit) -> Option<String> {
 }
 
 /// The column of that name with a role that the user gives. The last word of its name may be a unit.
-pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
-    let words = words(name);
+pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> NamedColumn {
+    let words = name_words(name);
     let last = words.last().map_or("", String::as_str);
     let of_time = [words.concat().as_str(), last].iter().find_map(|unit| unit_of(&TIME_UNITS, unit));
-    Named {
+    NamedColumn {
         index,
         role,
         time_unit: of_time.filter(|_| role == Role::Time),
@@ -185,8 +180,8 @@ pub(super) fn is_known(name: &str) -> bool {
 }
 
 /// The column of that name; `None` for an unknown one.
-pub(super) fn named(index: usize, name: &str) -> Option<Named> {
-    let mut words = words(name);
+pub(super) fn named(index: usize, name: &str) -> Option<NamedColumn> {
+    let mut words = name_words(name);
     // `rostopic echo -p` writes the fields of a message as `field.pose.position.x`.
     if words.first().is_some_and(|word| word == "field") {
         words.remove(0);
@@ -198,8 +193,7 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
         Some(*role)
     };
     let whole = role(&words);
-    let found = whole.or_else(|| role(words.split_last()?.1))?;
-    let named = chosen_as(found, index, name);
+    let named = chosen_as(whole.or_else(|| role(words.split_last()?.1))?, index, name);
     // A word beside the name of a role is its unit.
     (whole.is_some() || named.time_unit.is_some() || named.length.is_some()).then_some(named)
 }
@@ -222,27 +216,5 @@ pub(super) fn count_columns<'a>(names: impl Iterator<Item = &'a str>) -> bool {
 
 /// Whether the last word of a name is a unit of time.
 pub(super) fn is_of_time(name: &str) -> bool {
-    let words = words(name);
-    let unit = words.last().map_or("", String::as_str);
-    unit_of(&TIME_UNITS, unit).is_some() || unit_of(&RESTS, unit).is_some()
-}
-
-/// The words of a name in small letters: `trackId`, `track_id` and `Track ID` have the words track and id.
-pub(super) fn words(name: &str) -> Vec<String> {
-    let mut words = vec![String::new()];
-    let mut was_small = false;
-    for letter in name.chars() {
-        let begins = letter.is_uppercase() && was_small;
-        if (begins || !letter.is_alphanumeric()) && words.last().is_some_and(|word| !word.is_empty()) {
-            words.push(String::new());
-        }
-        if letter.is_alphanumeric()
-            && let Some(word) = words.last_mut()
-        {
-            word.extend(letter.to_lowercase());
-        }
-        was_small = letter.is_lowercase();
-    }
-    words.retain(|word| !word.is_empty());
-    words
+    name_words(name).last().is_some_and(|unit| unit_of(&TIME_UNITS, unit).is_some() || unit_of(&RESTS, unit).is_some())
 }

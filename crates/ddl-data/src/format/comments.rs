@@ -2,7 +2,7 @@
 
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::is_known;
-use crate::format::header::Header;
+use crate::format::header::ColumnRoles;
 use crate::format::separator::Separator;
 
 /// Begin a line that holds no observation.
@@ -56,16 +56,15 @@ pub(super) fn names_in_comments<'a>(
     let names: Vec<Vec<String>> = comments.filter_map(|comment| names_in(comment, choice)).collect();
     let is_header = |names: &&Vec<String>| {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        names.len() < count && Header::of(&names, choice).is_ok()
+        names.len() < count && ColumnRoles::of_names(&names, choice).is_ok()
     };
-    let exact = names.iter().rev().find(|names| names.len() == count);
-    exact.or_else(|| names.iter().rev().find(is_header)).cloned()
+    names.iter().rev().find(|names| names.len() == count).or_else(|| names.iter().rev().find(is_header)).cloned()
 }
 
 fn names_in(comment: &str, choice: &ColumnChoice) -> Option<Vec<String>> {
     let text = comment.trim_start().trim_start_matches(COMMENTS).trim();
     let text = text.rsplit_once(':').map_or(text, |(_, names)| names.trim());
-    let names = Separator::of(text).fields(text, 1).ok()?;
+    let names = Separator::of(text).fields(text).ok()?;
     let names: Vec<String> = names.into_iter().map(std::borrow::Cow::into_owned).collect();
     let is_known =
         |name: &&String| is_known(name) || choice.roles.iter().any(|(_, chosen)| chosen.eq_ignore_ascii_case(name));

@@ -1,8 +1,11 @@
 //! The tracks of the Edinburgh forum: a line `TRACK.R12=[[x y frame];[x y frame];...];` for each pedestrian.
 
+use ddl_core::Setting;
+
 use crate::format::choice::ColumnChoice;
+use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field;
-use crate::format::place::{FilePlace, Misread};
+use crate::format::quoted::quoted;
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 
@@ -13,7 +16,6 @@ const RATE: f64 = 9.0;
 /// Pixels in a metre of the floor: 24.7 mm each.
 const PER_METRE: f64 = 1.0 / 0.0247;
 const NOTE: &str = "read as tracks of the Edinburgh forum, 9 frames a second";
-const SCALE: &str = "a pixel is taken as 24.7 mm (or give --homography)";
 
 /// Whether a first line is that of such a file.
 pub(super) fn is_first(line: &str) -> bool {
@@ -21,7 +23,7 @@ pub(super) fn is_first(line: &str) -> bool {
     line.starts_with(TRACK) || line.starts_with(PROPERTIES)
 }
 
-pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misread> {
+pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
     let per_metre = if choice.is_mapped { 1.0 } else { PER_METRE };
     let (mut rows, mut repeated) = (Vec::new(), 0);
     for (line, text) in (1..).zip(text.lines()) {
@@ -45,7 +47,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
                 if values.is_empty() {
                     continue;
                 }
-                return Err(place.wrong(format!("expected x, y and frame, found {:?}", field::quoted(&point))));
+                return Err(place.wrong(format!("expected x, y and frame, found {:?}", quoted(&point))));
             };
             let frame = place.read(field::integer(frame, "frame"))?;
             let number = |text: &str, name: &str| field::coordinate(text, name, per_metre);
@@ -57,7 +59,7 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
             rows.push(TrackRow::numbered(frame, pedestrian, position, place));
         }
     }
-    let scale = (!choice.is_mapped).then(|| SCALE.to_owned());
+    let scale = (!choice.is_mapped).then(|| format!("a pixel is taken as 24.7 mm (or give {})", Setting::Homography));
     let left_out = (repeated > 0).then(|| format!("rows left out: {repeated} at the same frame as the one before"));
     let notes = std::iter::once(NOTE.to_owned()).chain(scale).chain(left_out);
     Ok(TextFile::without_columns(rows, notes, Some(RATE)))

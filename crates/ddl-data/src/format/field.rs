@@ -7,10 +7,9 @@ use time::format_description::well_known::Iso8601;
 use time::{OffsetDateTime, PrimitiveDateTime};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
-use crate::format::problem::{not_a_time, not_finite, not_integer};
-
-/// Longest piece of a file that an error message quotes, in characters.
-const QUOTED: usize = 40;
+use crate::format::fault::Problem;
+use crate::format::problem::{not_a_time, not_finite, not_integer, value};
+use crate::format::quoted::{escaped, quoted};
 
 /// Longest word that names a pedestrian, in bytes.
 const LONGEST_WORD: usize = 256;
@@ -25,32 +24,32 @@ pub(super) fn trimmed(field: &str) -> &str {
 }
 
 /// A frame or pedestrian number. Files write them as `12`, `12.0` or `1.2e1`.
-pub(super) fn integer(text: &str, name: &str) -> Result<i64, String> {
-    let text = trimmed(text);
+pub(super) fn integer(text: &str, name: &str) -> Result<i64, Problem> {
+    whole_number(trimmed(text)).ok_or_else(|| not_integer(name, trimmed(text)))
+}
+
+fn whole_number(text: &str) -> Option<i64> {
     let number = text.parse::<i64>().ok().or_else(|| {
         let number = text.parse::<f64>().ok()?;
         // Within the limit every whole `f64` is exactly an `i64`.
         (number.fract() == 0.0 && number.abs() < FRAME_LIMIT as f64).then_some(number as i64)
     });
-    let number = number.filter(|number| is_frame(*number));
-    number.ok_or_else(|| not_integer(name, &quoted(text)))
+    number.filter(|number| is_frame(*number))
 }
 
 /// A frame number or, with a unit, a time in microseconds.
-pub(super) fn frame(text: &str, name: &str, unit: Option<TimeUnit>) -> Result<i64, String> {
+pub(super) fn frame(text: &str, name: &str, unit: Option<TimeUnit>) -> Result<i64, Problem> {
     match unit {
         None => integer(text, name),
         Some(unit) => time(text.trim(), name, unit),
     }
 }
 
-fn time(text: &str, name: &str, unit: TimeUnit) -> Result<i64, String> {
+fn time(text: &str, name: &str, unit: TimeUnit) -> Result<i64, Problem> {
     let Some((a_second, _)) = unit.a_second() else {
-        let stamp = date(text).ok_or_else(|| not_a_time("time", &quoted(text), DATE))?;
-        let is_near = stamp.abs() < FRAME_LIMIT;
-        return is_near
-            .then_some(stamp)
-            .ok_or_else(|| format!("time {} is not within 285 years of 1970", quoted(text)));
+        let stamp = date(text).ok_or_else(|| not_a_time(text, DATE))?;
+        let near = Some(stamp).filter(|stamp| stamp.abs() < FRAME_LIMIT);
+        return near.ok_or_else(|| format!("time {} is not within 285 years of 1970", quoted(text)).into());
     };
     let scale = STAMPS_A_SECOND as f64 / a_second as f64;
     // Whole nanoseconds since 1970 have more digits than an `f64`.
@@ -58,15 +57,14 @@ fn time(text: &str, name: &str, unit: TimeUnit) -> Result<i64, String> {
     let whole = whole.map(|number| number.div_euclid(a_second / STAMPS_A_SECOND) as f64);
     let stamp = whole.or_else(|| Some((text.parse::<f64>().ok()? * scale).round()));
     let stamp = stamp.filter(|stamp| stamp.is_finite());
-    let wanted = || format!("a number, or in all rows {DATE}");
-    let stamp = stamp.ok_or_else(|| not_a_time("time", &quoted(text), &wanted()))?;
+    let stamp = stamp.ok_or_else(|| not_a_time(text, format!("a number, or in all rows {DATE}")))?;
     if stamp.abs() >= FRAME_LIMIT as f64 {
         let finer = match name {
             "frame" => "call the column time_ms, or time_us or time_ns",
             _ => "write seconds",
         };
         let limit = "is not within 285 years of 1970; if it counts milliseconds";
-        return Err(format!("time {} {limit}, {finer}; divide ticks of 100 ns", quoted(text)));
+        return Err(format!("time {} {limit}, {finer}; divide ticks of 100 ns", quoted(text)).into());
     }
     Ok(stamp as i64)
 }
@@ -118,28 +116,28 @@ impl PedestrianField {
 
 /// A pedestrian: a number as [`integer`] parses it, or a word. Fractions, NaN, infinite numbers and empty fields are
 /// refused. Whole numbers that are too large are words.
-pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, String> {
+pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, Problem> {
     // Tables of other programs have 12.0 for 12.
     let text = match trimmed(text).split_once('.') {
         Some((whole, zeros)) if zeros.trim_matches('0').is_empty() && whole.parse::<i64>().is_ok() => whole,
         _ => trimmed(text),
     };
-    match integer(text, name) {
-        Ok(number) => {
+    match whole_number(text) {
+        Some(number) => {
             let is_plain = matches!(PedestrianName::of_text(text), PedestrianName::Number(_));
             Ok(PedestrianField::Number(number, (!is_plain).then(|| text.into())))
         }
-        Err(problem) if text.is_empty() || is_fraction_or_infinite(text) => Err(problem),
-        Err(_) => word(text, name),
+        None if text.is_empty() || is_fraction_or_infinite(text) => Err(not_integer(name, text)),
+        None => word(text, name),
     }
 }
 
 /// A pedestrian that is named by a word. Control characters, which would act on terminals, are replaced by their
 /// escapes.
-pub(super) fn word(text: &str, name: &str) -> Result<PedestrianField, String> {
+pub(super) fn word(text: &str, name: &str) -> Result<PedestrianField, Problem> {
     if text.len() > LONGEST_WORD {
         let (found, length) = (quoted(text), text.len());
-        return Err(format!("{name} has {length} bytes, at most {LONGEST_WORD} are read, found {found:?}"));
+        return Err(format!("{name} has {length} bytes, at most {LONGEST_WORD} are read, found {found:?}").into());
     }
     if !text.contains(char::is_control) {
         return Ok(PedestrianField::Word(text.into()));
@@ -154,46 +152,21 @@ fn is_fraction_or_infinite(text: &str) -> bool {
 }
 
 /// A coordinate in metres, written in units of which `per_metre` make a metre.
-pub(super) fn coordinate(text: &str, name: &str, per_metre: f64) -> Result<f64, String> {
+pub(super) fn coordinate(text: &str, name: &str, per_metre: f64) -> Result<f64, Problem> {
     let text = trimmed(text);
     match text.parse::<f64>().map(|number| number / per_metre) {
         Ok(number) if number.abs() <= COORDINATE_LIMIT => Ok(number),
-        Ok(number) if number.is_finite() => Err(format!(
-            "{name} must lie within {COORDINATE_LIMIT} m of the origin, found {:?}; use an origin near the scene",
-            quoted(text)
-        )),
-        _ => Err(not_finite(name, &quoted(text))),
+        Ok(number) if number.is_finite() => {
+            let found = format!("found {:?}; use an origin near the scene", quoted(text));
+            Err(format!("{name} must lie within {COORDINATE_LIMIT} m of the origin, {found}").into())
+        }
+        _ => Err(not_finite(name, text)),
     }
 }
 
 /// Checks that an unused field holds a number, of any size or NaN.
-pub(super) fn number(text: &str, name: &str) -> Result<(), String> {
-    match text.parse::<f64>() {
-        Ok(_) => Ok(()),
-        Err(_) => Err(format!("{name} must be a number, found {:?}", quoted(text))),
-    }
-}
-
-/// A piece of a file for a message, without control characters.
-pub(super) fn quoted(text: &str) -> String {
-    let (text, rest) = match text.char_indices().nth(QUOTED) {
-        Some((end, _)) => (&text[..end], "..."),
-        None => (text, ""),
-    };
-    escaped(text) + rest
-}
-
-/// A text of others with its control characters, which would act on terminals, as escapes.
-pub fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for letter in text.chars() {
-        if letter.is_control() {
-            escaped.extend(letter.escape_default());
-        } else {
-            escaped.push(letter);
-        }
-    }
-    escaped
+pub(super) fn number(text: &str, name: &str) -> Result<(), Problem> {
+    text.parse::<f64>().map(drop).map_err(|_| value(name, "a number", text))
 }
 
 #[cfg(test)]
@@ -208,8 +181,7 @@ mod tests {
         let read = |text: &str| pedestrian(text, "pedestrian");
         assert_eq!(read(" 12.0"), Ok(PedestrianField::Number(12, None)));
         for (text, number) in [(" 1.2e1", 12), ("-0", 0), ("007", 7)] {
-            let as_written = Some(text.trim().into());
-            assert_eq!(read(text), Ok(PedestrianField::Number(number, as_written)));
+            assert_eq!(read(text), Ok(PedestrianField::Number(number, Some(text.trim().into()))));
         }
         for text in ["7f3e", "cam.0", "12e4567", "5e20", "9007199254740992", " a b "] {
             assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));
@@ -226,6 +198,6 @@ mod tests {
             assert!(coordinate(text, "x", 1.0).is_err(), "{text}");
         }
         assert_eq!(coordinate("-1e7", "x", 1.0), Ok(-1e7));
-        assert_eq!(quoted(&"ä".repeat(500)).chars().count(), QUOTED + 3);
+        assert_eq!(quoted(&"ä".repeat(500)).chars().count(), 43);
     }
 }

@@ -26,7 +26,7 @@ pub(super) enum Order {
     Neither,
 }
 
-struct Tracks {
+struct TrackSteps {
     /// Median distance between successive rows of a pedestrian.
     step: f64,
     /// Rows per pedestrian.
@@ -41,8 +41,8 @@ pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
     let rows = &rows[..rows.len().min(MOST_ROWS)];
     // Only times have fractions.
     let fractions = [0, 1].map(|column| rows.iter().any(|(of, _)| of[column].fract() != 0.0));
-    let read = [0, 1].map(|frame| tracks(rows, frame));
-    let are_few = |tracks: &Option<Tracks>| tracks.as_ref().is_none_or(|tracks| tracks.rows < LEAST);
+    let read = [0, 1].map(|frame| track_steps(rows, frame));
+    let are_few = |tracks: &Option<TrackSteps>| tracks.as_ref().is_none_or(|tracks| tracks.rows < LEAST);
     if rows.len() > FEW_ROWS && read.iter().all(are_few) {
         return Order::Neither;
     }
@@ -78,7 +78,7 @@ pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
 }
 
 /// The tracks, if this column is the frame and the other one the pedestrian; `None` if no pedestrian has two rows.
-fn tracks(rows: &[([f64; 2], Position)], frame: usize) -> Option<Tracks> {
+fn track_steps(rows: &[([f64; 2], Position)], frame: usize) -> Option<TrackSteps> {
     let mut sorted: Vec<(f64, f64, Position)> = rows.iter().map(|(of, at)| (of[1 - frame], of[frame], *at)).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let of_pedestrians = sorted.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq());
@@ -97,7 +97,7 @@ fn tracks(rows: &[([f64; 2], Position)], frame: usize) -> Option<Tracks> {
     }
     let middle = steps.len() / 2;
     let (_, &mut step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
-    Some(Tracks { step, rows: rows.len() as f64 / pedestrians as f64, unit })
+    Some(TrackSteps { step, rows: rows.len() as f64 / pedestrians as f64, unit })
 }
 
 fn greatest_divisor(a: u64, b: u64) -> u64 {

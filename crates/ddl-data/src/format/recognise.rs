@@ -2,14 +2,13 @@
 
 use std::path::Path;
 
-use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::count_columns;
 use crate::format::comments::{is_comment, names_in_comments};
 use crate::format::edinburgh;
+use crate::format::fault::{Fault, FormatError};
 use crate::format::kind::Format;
 use crate::format::order::{MOST_ROWS, Order, order};
-use crate::format::place::FilePlace;
 use crate::format::separator::Separator;
 use crate::format::text::end_of_lines;
 use crate::format::vsp;
@@ -32,7 +31,7 @@ impl Format {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let named = |name: &str| extension.eq_ignore_ascii_case(name);
         let text = String::from_utf8_lossy(bytes);
-        let lines = Lines::of(text.strip_prefix('\u{feff}').unwrap_or(&text));
+        let lines = FilledLines::of(text.strip_prefix('\u{feff}').unwrap_or(&text));
         let Some(first) = lines.filled().next() else {
             return Ok(match () {
                 () if named("ndjson") || named("jsonl") => Self::TrajNet,
@@ -74,7 +73,7 @@ impl Format {
             (_, Separator::Blanks) if !named("csv") => Ok(Self::SocialGan),
             _ => Ok(Self::Table),
         };
-        recognised.map_err(|problem| FilePlace::line(1).wrong(problem).in_file(&path.display().to_string()))
+        recognised.map_err(|fault| fault.in_line(&path.display().to_string(), 1))
     }
 }
 
@@ -103,25 +102,23 @@ fn of_columns(fields: &[String], separator: Separator) -> Option<Format> {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Lines<'a> {
+struct FilledLines<'a> {
     text: &'a str,
     end: char,
 }
 
-impl<'a> Lines<'a> {
+impl<'a> FilledLines<'a> {
     fn of(text: &'a str) -> Self {
         let end = end_of_lines(text);
         Self { text, end }
     }
 
     fn filled(self) -> impl Iterator<Item = &'a str> {
-        let lines = self.text.split(self.end);
-        lines.filter(|line| !line.trim().is_empty() && !is_comment(line))
+        self.text.split(self.end).filter(|line| !line.trim().is_empty() && !is_comment(line))
     }
 
     fn has_header_in_comment(self, count: usize, choice: &ColumnChoice) -> bool {
-        let lines = self.text.split(self.end);
-        let comments = lines.take_while(|line| line.trim().is_empty() || is_comment(line));
+        let comments = self.text.split(self.end).take_while(|line| line.trim().is_empty() || is_comment(line));
         names_in_comments(comments, count, choice).is_some()
     }
 
@@ -139,7 +136,7 @@ impl<'a> Lines<'a> {
     /// The first N columns of the rows in which these are numbers.
     fn numbers<const N: usize>(self, separator: Separator) -> impl Iterator<Item = [f64; N]> {
         self.filled().filter_map(move |line| {
-            let fields = separator.fields(line, 1).ok()?;
+            let fields = separator.fields(line).ok()?;
             let numbers = fields.iter().take(N).map(|field| separator.with_point(field).parse().ok());
             numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
         })
@@ -150,20 +147,18 @@ impl<'a> Lines<'a> {
         order(&rows.map(|[a, b, x, y]| ([a, b], [x, y])).collect::<Vec<_>>())
     }
 
-    fn of_four(self, separator: Separator) -> Result<Format, String> {
+    fn of_four(self, separator: Separator) -> Result<Format, Fault> {
         match self.order(separator) {
             Order::FrameFirst => Ok(Format::SocialGan),
             Order::PedestrianFirst => Ok(Format::IdFirst),
-            Order::Unclear => Err(
-                "the first two columns may be frame and pedestrian, or pedestrian and frame: both give tracks; write \
-                 the line frame,pedestrian,x,y above them, or pedestrian,frame,x,y (with the separators of the rows)"
-                    .to_owned(),
-            ),
-            Order::Neither => Err(
-                "the first two columns are not frame and pedestrian: hardly any pedestrian would have two rows; write \
-                 the names of the columns above the rows, such as x,y,frame,pedestrian (with their separators)"
-                    .to_owned(),
-            ),
+            Order::Unclear => Err("the first two columns may be frame and pedestrian, or pedestrian and frame: both \
+                                   give tracks; write the line frame,pedestrian,x,y above them, or \
+                                   pedestrian,frame,x,y (with the separators of the rows)"
+                .into()),
+            Order::Neither => Err("the first two columns are not frame and pedestrian: hardly any pedestrian would \
+                                   have two rows; write the names of the columns above the rows, such as \
+                                   x,y,frame,pedestrian (with their separators)"
+                .into()),
         }
     }
 
@@ -183,9 +178,8 @@ impl<'a> Lines<'a> {
 
 /// The fields of a line, without empty ones at its end; numbers have a decimal point.
 fn fields(separator: Separator, line: &str) -> Vec<String> {
-    let fields = separator.fields(line, 1).unwrap_or_default();
-    let fields = fields.iter().map(|field| separator.with_point(field).into_owned());
-    let mut fields: Vec<String> = fields.collect();
+    let fields = separator.fields(line).unwrap_or_default();
+    let mut fields: Vec<String> = fields.iter().map(|field| separator.with_point(field).into_owned()).collect();
     while fields.last().is_some_and(String::is_empty) {
         fields.pop();
     }

@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ddl_core::{Numbering, PedestrianId, PedestrianNames, Position};
+use ddl_core::{Numbering, PedestrianId, PedestrianNames, Position, Setting};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
-use crate::error::DataError;
+use crate::file_error::DataError;
+use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field::PedestrianField;
-use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate};
 use crate::observation::Observation;
 use crate::observe::LONGEST_GAP;
@@ -44,7 +44,7 @@ pub(super) fn into_recording(
     advice_on_same: impl Fn([usize; 2]) -> String,
 ) -> Result<Recording, DataError> {
     let (restarts, unit) = (restarts(&rows), rows.first().and_then(|row| row.unit));
-    let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.in_file(origin))?;
+    let (observations, names) = observations(rows, unit, advice_on_same).map_err(|error| error.in_text(origin))?;
     let recording = Recording::in_usual_step(origin, observations);
     let mut recording = recording.map_err(|source| DataError::Recording { name: origin.to_owned(), source })?;
     recording.restarts = restarts;
@@ -56,13 +56,16 @@ fn observations(
     rows: Vec<TrackRow>,
     unit: Option<TimeUnit>,
     advice_on_same: impl Fn([usize; 2]) -> String,
-) -> Result<(Vec<Observation>, PedestrianNames), Misread> {
+) -> Result<(Vec<Observation>, PedestrianNames), FormatError> {
     if rows.is_empty() {
         return Err(FilePlace::line(1).wrong(EMPTY));
     }
     if let Some(row) = rows.iter().find(|row| row.scene != rows[0].scene) {
-        let problem = "a file holds one recording, but this row is of another scene than the first; pipe it to `ddl \
-                       forecast -`, make a file of each scene, or read one scene of a table (--keep scene=NAME)";
+        let keep = Setting::Keep.to("scene=NAME");
+        let problem = format!(
+            "a file holds one recording, but this row is of another scene than the first; read it as a stream, make a \
+             file of each scene, or read one scene of a table ({keep})"
+        );
         return Err(row.place.wrong(problem));
     }
     if let Some(row) = rows.iter().find(|row| row.unit != unit) {
@@ -96,8 +99,7 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
                 id
             }
         };
-        let seen = Observation::new(row.frame, pedestrian, row.position);
-        (seen, row.place)
+        (Observation::new(row.frame, pedestrian, row.position), row.place)
     });
     (placed.collect(), PedestrianNames::new(names))
 }
@@ -144,6 +146,5 @@ fn restarts_of_tracks(rows: &[TrackRow], disorder: i64) -> usize {
 fn first_duplicate(rows: &mut [Placed]) -> Option<&[Placed; 2]> {
     let key = |(seen, _): &Placed| (seen.frame, seen.pedestrian);
     rows.sort_unstable_by_key(|row| (key(row), row.1));
-    let pairs = rows.array_windows().filter(|[first, again]| key(first) == key(again));
-    pairs.min_by_key(|[_, again]| again.1)
+    rows.array_windows().filter(|[first, again]| key(first) == key(again)).min_by_key(|[_, again]| again.1)
 }

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
+use crate::format::fault::Fault;
 use crate::format::field::trimmed;
-use crate::format::place::{FilePlace, Misread};
 
 /// What stands between the fields of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,14 +62,14 @@ impl Separator {
     }
 
     /// The fields of a line, without blanks around them and quotes.
-    pub(super) fn fields(self, text: &str, line: usize) -> Result<Vec<Cow<'_, str>>, Misread> {
+    pub(super) fn fields(self, text: &str) -> Result<Vec<Cow<'_, str>>, Fault> {
         let mut fields = Vec::new();
-        self.split(text, line, &mut fields)?;
+        self.split(text, &mut fields)?;
         Ok(fields)
     }
 
     /// As [`fields`](Self::fields), into a list that is used again for the next line.
-    pub(super) fn split<'a>(self, text: &'a str, line: usize, fields: &mut Vec<Cow<'a, str>>) -> Result<(), Misread> {
+    pub(super) fn split<'a>(self, text: &'a str, fields: &mut Vec<Cow<'a, str>>) -> Result<(), Fault> {
         fields.clear();
         if self == Self::Blanks {
             let words = text.split_ascii_whitespace();
@@ -81,12 +81,11 @@ impl Separator {
         for (at, &byte) in plain.as_bytes().iter().enumerate() {
             match byte {
                 b'\r' | b'"' if plain.contains('\r') => {
-                    let problem = "a carriage return stands within the line; end each line with a line feed";
-                    return Err(FilePlace::line(line).wrong(problem));
+                    return Err("a carriage return stands within the line; end each line with a line feed".into());
                 }
                 // A CSV reader is costly to create for every line, and is only needed for quoted fields.
                 b'"' => {
-                    *fields = self.quoted_fields(text, line)?;
+                    *fields = self.quoted_fields(text)?;
                     return Ok(());
                 }
                 _ if byte == letter => {
@@ -100,7 +99,7 @@ impl Separator {
         Ok(())
     }
 
-    fn quoted_fields(self, text: &str, line: usize) -> Result<Vec<Cow<'_, str>>, Misread> {
+    fn quoted_fields(self, text: &str) -> Result<Vec<Cow<'_, str>>, Fault> {
         let mut reader = csv::ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
@@ -108,8 +107,7 @@ impl Separator {
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
         let mut record = csv::StringRecord::new();
-        let read = reader.read_record(&mut record);
-        read.map_err(|error| FilePlace::line(line).wrong(format!("not a well-formed table: {error}")))?;
+        reader.read_record(&mut record).map_err(|error| format!("not a well-formed table: {error}"))?;
         Ok(record.iter().map(|field| field.to_owned().into()).collect())
     }
 }
@@ -125,8 +123,7 @@ mod tests {
             text in "[a0.,; \t\u{a0}\"]{0,12}[a0,;]\r?\n?",
             separator in prop_oneof![Just(Separator::Comma), Just(Separator::Semicolon)],
         ) {
-            let fields = separator.fields(&text, 1).unwrap();
-            prop_assert_eq!(fields, separator.quoted_fields(&text, 1).unwrap());
+            prop_assert_eq!(separator.fields(&text).unwrap(), separator.quoted_fields(&text).unwrap());
         }
     }
 }

@@ -1,14 +1,14 @@
 //! The `star` CSV format: four long parallel lines.
 
+use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field;
-use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
 
 const LINES: usize = 4;
 const NAMES: &str = "frame, pedestrian, y, x";
 
-pub(super) fn parse(text: &str) -> Result<Vec<TrackRow>, Misread> {
+pub(super) fn parse(text: &str) -> Result<Vec<TrackRow>, FormatError> {
     let text = text.trim_end();
     if text.is_empty() {
         return Err(FilePlace::line(1).wrong(EMPTY));

@@ -3,20 +3,22 @@
 #![expect(clippy::ref_option, reason = "the keys of the map of scenes")]
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::io::{BufRead, Read as _};
+use std::io::BufRead;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use ddl_core::{Numbering, PedestrianId, PedestrianName, PedestrianNames, Position};
 
 use crate::clock::TimeUnit;
-use crate::error::{DataError, FormatError};
+use crate::file_error::DataError;
 use crate::format::choice::ColumnChoice;
 use crate::format::comments::{is_comment, rate_of};
+use crate::format::fault::{Fault, FormatError};
 use crate::format::field::PedestrianField;
 use crate::format::kind::Format;
-use crate::format::place::{FilePlace, Misread};
-use crate::format::problem::{MIXED_TIMES, NOT_UTF8, duplicate, when};
+use crate::format::lines::TextLines;
+use crate::format::problem::{MIXED_TIMES, duplicate, when};
+use crate::format::row_reader::RowReader;
 use crate::format::rows::TrackRow;
 use crate::format::track_columns::TrackColumns;
 use crate::format::trajnet;
@@ -66,9 +68,7 @@ pub struct Frame {
 /// returned.
 #[derive(Debug)]
 pub struct FrameReader<R> {
-    reader: R,
-    origin: String,
-    lines: usize,
+    lines: TextLines<R>,
     kind: Option<Kind>,
     choice: ColumnChoice,
     /// The comments before the first observation.
@@ -125,7 +125,7 @@ struct Growing {
 
 #[derive(Debug)]
 enum Kind {
-    Text(Box<TrackColumns>),
+    Text(Box<RowReader>),
     TrajNet,
 }
 
@@ -133,9 +133,7 @@ impl<R: BufRead> FrameReader<R> {
     /// Creates a reader; `origin` names the input in messages.
     pub fn new(reader: R, origin: impl Into<String>) -> Self {
         Self {
-            reader,
-            origin: origin.into(),
-            lines: 0,
+            lines: TextLines::new(reader, origin, LONGEST_LINE, "is it a file of tracks?"),
             kind: None,
             choice: ColumnChoice::default(),
             comments: String::new(),
@@ -175,21 +173,19 @@ impl<R: BufRead> FrameReader<R> {
             if let Some(frame) = self.left.pop_front() {
                 return Ok(Some(frame));
             }
-            let Some(text) = self.line()? else {
+            let Some(text) = self.lines.next_line()? else {
                 self.ended = true;
                 break;
             };
-            if text.trim().is_empty() {
-                if let Some(frame) = self.whole(&self.spoken_of.clone()) {
-                    return Ok(Some(frame));
-                }
-                continue;
-            }
-            let Some(row) = self.row(&text)? else {
-                continue;
+            let text = text.to_owned();
+            let frame = if text.trim().is_empty() {
+                self.take_frame(&self.spoken_of.clone())
+            } else {
+                let added = self.row(&text)?.map(|row| self.add(row)).transpose();
+                added.map_err(|fault| self.lines.wrong(fault))?.flatten()
             };
-            if let Some(frame) = self.add(row)? {
-                return Ok(Some(frame));
+            if frame.is_some() {
+                return Ok(frame);
             }
         }
         Ok(self.unfinished())
@@ -202,7 +198,7 @@ impl<R: BufRead> FrameReader<R> {
         }
         let mut scenes = self.scenes.iter();
         let (name, _) = scenes.find(|(_, scene)| scene.current.is_some())?;
-        self.whole(&name.clone())
+        self.take_frame(&name.clone())
     }
 
     /// Whether the observations so far name scenes.
@@ -234,107 +230,62 @@ impl<R: BufRead> FrameReader<R> {
         self.others.frames_a_second
     }
 
-    /// The next line without its line ending; `None` at the end of the file.
-    fn line(&mut self) -> Result<Option<String>, DataError> {
-        let mut bytes = Vec::new();
-        let mut limited = self.reader.by_ref().take(LONGEST_LINE as u64 + 1);
-        let read = limited.read_until(b'\n', &mut bytes);
-        read.map_err(|source| self.unreadable(source))?;
-        if bytes.is_empty() {
-            return Ok(None);
-        }
-        self.lines += 1;
-        if bytes.len() > LONGEST_LINE {
-            if bytes.last() != Some(&b'\n') {
-                self.skip_line()?;
-            }
-            let problem = format!("the line is longer than {LONGEST_LINE} bytes; is it a file of tracks?");
-            return Err(self.wrong(problem).into());
-        }
-        match String::from_utf8(bytes) {
-            Err(_) => Err(self.wrong(NOT_UTF8).into()),
-            Ok(text) if self.lines == 1 => Ok(Some(text.trim_start_matches('\u{feff}').to_owned())),
-            Ok(text) => Ok(Some(text)),
-        }
-    }
-
-    fn skip_line(&mut self) -> Result<(), DataError> {
-        loop {
-            let (skipped, ended) = match self.reader.fill_buf() {
-                Err(source) => return Err(self.unreadable(source)),
-                Ok([]) => return Ok(()),
-                Ok(bytes) => match bytes.iter().position(|&byte| byte == b'\n') {
-                    Some(end) => (end + 1, true),
-                    None => (bytes.len(), false),
-                },
-            };
-            self.reader.consume(skipped);
-            if ended {
-                return Ok(());
-            }
-        }
-    }
-
-    fn unreadable(&self, source: std::io::Error) -> DataError {
-        let path = self.origin.clone().into();
-        DataError::Read { path, source }
-    }
-
+    /// The observation of a line, if it holds one. The first line but comments shows of which kind all are.
     fn row(&mut self, text: &str) -> Result<Option<TrackRow>, FormatError> {
-        let (line, origin) = (self.lines, self.origin.as_str());
-        let in_file = |error: Misread| error.in_file(origin);
-        let Some(kind) = &mut self.kind else {
-            if is_comment(text) {
+        let line = self.lines.number();
+        let row = match &mut self.kind {
+            Some(Kind::Text(reader)) => reader.row_of_line(text, line),
+            Some(Kind::TrajNet) => trajnet::observation(text, line, &mut self.others).map_err(Fault::from),
+            None if is_comment(text) => {
                 self.frame_rate = self.frame_rate.or(rate_of(text));
                 if self.comments.len() + text.len() <= LONGEST_LINE {
                     self.comments += text;
                 }
-                return Ok(None);
+                Ok(None)
             }
-            let comments = std::mem::take(&mut self.comments);
-            let begin = comments.clone() + text;
-            let format = Format::guess("".as_ref(), begin.as_bytes(), &self.choice)?;
-            if matches!(format, Format::Vsp | Format::Edinburgh) {
-                let problem = format!("lines of the format {format} are not in order of time; give the file");
-                return Err(in_file(FilePlace::line(line).wrong(problem)));
+            None => {
+                let comments = std::mem::take(&mut self.comments);
+                let (kind, is_header) =
+                    self.kind_of(&comments, text).map_err(|error| error.in_text(self.lines.origin()))?;
+                self.kind = Some(kind);
+                return if is_header { Ok(None) } else { self.row(text) };
             }
-            let (kind, is_header) = if format == Format::TrajNet {
-                let allowed = self.choice.refuse_for(format);
-                FilePlace::line(line).read(allowed).map_err(in_file)?;
-                (Kind::TrajNet, false)
-            } else {
-                let comments: Vec<&str> = comments.lines().collect();
-                let columns = TrackColumns::of((format, &self.choice), &comments, text, line);
-                let (mut columns, is_header) = columns.map_err(in_file)?;
-                columns.begin_stream(line).map_err(in_file)?;
-                self.frame_rate = self.frame_rate.or(columns.rate());
-                (Kind::Text(Box::new(columns)), is_header)
-            };
-            self.kind = Some(kind);
-            return if is_header { Ok(None) } else { self.row(text) };
         };
-        let row = match kind {
-            Kind::Text(columns) => columns.row_of_line(text, line),
-            Kind::TrajNet => trajnet::observation(text, line, &mut self.others),
-        };
-        row.map_err(in_file)
+        row.map_err(|fault| self.lines.wrong(fault))
+    }
+
+    /// The kind of a stream that begins with these comments and this line, and whether the line is a header.
+    fn kind_of(&mut self, comments: &str, text: &str) -> Result<(Kind, bool), FormatError> {
+        let begin = comments.to_owned() + text;
+        let format = Format::guess("".as_ref(), begin.as_bytes(), &self.choice)?;
+        if matches!(format, Format::Vsp | Format::Edinburgh) {
+            let problem = format!("lines of the format {format} are not in order of time; give the file");
+            return Err(self.lines.wrong(problem));
+        }
+        if format == Format::TrajNet {
+            self.choice.refuse_for(format).map_err(|problem| self.lines.wrong(problem))?;
+            return Ok((Kind::TrajNet, false));
+        }
+        let comments: Vec<&str> = comments.lines().collect();
+        let (columns, is_header) = TrackColumns::of((format, &self.choice), &comments, text, self.lines.number())?;
+        self.frame_rate = self.frame_rate.or(columns.rate());
+        Ok((Kind::Text(Box::new(RowReader::of_stream(columns).map_err(|fault| self.lines.wrong(fault))?)), is_header))
     }
 
     /// Adds an observation. If it begins a new frame of its scene, returns the previous frame of the scene.
-    fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, FormatError> {
+    fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, Fault> {
         self.refuse_mixed(&seen)?;
         self.hear(&seen.scene)?;
         self.spoken_of.clone_from(&seen.scene);
         let name = seen.scene.clone();
         let before = self.begin_frame(&name, seen.frame)?;
         let (pedestrian, word) = self.numbered(&name, seen.pedestrian);
-        let (line, limit) = (self.lines, LARGEST_CROWD);
+        let (line, limit) = (self.lines.number(), LARGEST_CROWD);
         let scene = self.scenes.entry(name.clone()).or_insert_with(SceneProgress::unseen);
         let growing = scene.current.as_ref();
         if let Some(&first_line) = growing.and_then(|growing| growing.lines.get(&pedestrian)) {
-            let word = word.map(|word| PedestrianName::Word(word.to_string()));
-            let name = word.unwrap_or(pedestrian.into());
-            return Err(self.wrong(duplicate(name, (seen.frame, seen.unit), first_line)));
+            let name = word.map(|word| PedestrianName::Word(word.to_string())).unwrap_or(pedestrian.into());
+            return Err(duplicate(name, (seen.frame, seen.unit), first_line).into());
         }
         // A returned frame makes room for a pedestrian.
         if self.unfinished == limit {
@@ -345,7 +296,7 @@ impl<R: BufRead> FrameReader<R> {
                 }
             };
             let problem = format!("more than {limit} pedestrians in {frames}; does the frame number increase?");
-            return Err(self.wrong(problem));
+            return Err(problem.into());
         }
         let is_first = scene.last.is_none();
         let growing = scene.current.get_or_insert_with(|| Growing {
@@ -367,7 +318,7 @@ impl<R: BufRead> FrameReader<R> {
     }
 
     /// Checks that the frame is not before the last one of the scene. If it is a new one, returns the previous frame.
-    fn begin_frame(&mut self, name: &Option<SceneName>, frame: i64) -> Result<Option<Frame>, FormatError> {
+    fn begin_frame(&mut self, name: &Option<SceneName>, frame: i64) -> Result<Option<Frame>, Fault> {
         let unit = self.time_unit();
         let scene = self.scenes.entry(name.clone()).or_insert_with(SceneProgress::unseen);
         let reached = scene.current.as_ref().map(|growing| growing.frame.number);
@@ -376,31 +327,29 @@ impl<R: BufRead> FrameReader<R> {
         {
             let of_scene = name.as_ref().map_or_else(String::new, |scene| format!(" of scene {scene}"));
             let (now, last) = (when(frame, unit), when(last, unit));
-            return Err(
-                self.wrong(format!("{now}{of_scene} comes after {last}; a stream of tracks must be in order of time"))
-            );
+            let order = "a stream of tracks must be in order of time";
+            return Err(format!("{now}{of_scene} comes after {last}; {order}").into());
         }
-        Ok(if reached == Some(frame) { None } else { self.whole(name) })
+        Ok(if reached == Some(frame) { None } else { self.take_frame(name) })
     }
 
     /// Refuses a stream in which only some lines name a scene, or whose times change their kind.
-    fn refuse_mixed(&mut self, row: &TrackRow) -> Result<(), FormatError> {
-        let (is_named, unit, line) = (row.scene.is_some(), row.unit, self.lines);
+    fn refuse_mixed(&mut self, row: &TrackRow) -> Result<(), Fault> {
+        let (is_named, unit, line) = (row.scene.is_some(), row.unit, self.lines.number());
         let first = *self.first.get_or_insert(FirstRow { is_named, unit, line });
         if first.unit != unit {
-            return Err(self.wrong(MIXED_TIMES));
+            return Err(MIXED_TIMES.into());
         }
         if first.is_named == is_named {
             return Ok(());
         }
         let first_line = first.line;
         let here = if is_named { "a scene is named here, but not" } else { "track.scene is missing here, but present" };
-        Err(self
-            .wrong(format!("{here} on line {first_line}; name the scene of every observation or omit it everywhere")))
+        Err(format!("{here} on line {first_line}; name the scene of every observation or omit it everywhere").into())
     }
 
     /// Makes room for a new scene, and forgets idle scenes.
-    fn hear(&mut self, name: &Option<SceneName>) -> Result<(), FormatError> {
+    fn hear(&mut self, name: &Option<SceneName>) -> Result<(), Fault> {
         let idle_timeout = self.idle_timeout;
         match self.scenes.get_mut(name) {
             Some(scene) if name.is_none() || scene.heard.elapsed() < idle_timeout => {
@@ -410,11 +359,9 @@ impl<R: BufRead> FrameReader<R> {
             _ => {}
         }
         let idle = |scene: &SceneProgress| scene.heard.elapsed() >= idle_timeout;
-        let scenes = self.scenes.iter();
-        let idle = scenes.filter(|(_, scene)| idle(scene));
-        let idle: Vec<_> = idle.map(|(name, _)| name.clone()).collect();
+        let idle: Vec<_> = self.scenes.iter().filter(|(_, scene)| idle(scene)).map(|(name, _)| name.clone()).collect();
         for name in idle {
-            let frame = self.whole(&name);
+            let frame = self.take_frame(&name);
             self.left.extend(frame);
             self.scenes.remove(&name);
         }
@@ -422,10 +369,11 @@ impl<R: BufRead> FrameReader<R> {
             && self.scenes.len() == MOST_SCENES
         {
             let minutes = idle_timeout.as_secs() / 60;
-            return Err(self.wrong(format!(
+            return Err(format!(
                 "scene {scene} exceeds the limit of {MOST_SCENES} scenes; a scene is forgotten after {minutes} minutes \
-                 without a line; give the other scenes to another `ddl forecast -`"
-            )));
+                 without a line; give the other scenes to another reader"
+            )
+            .into());
         }
         Ok(())
     }
@@ -456,15 +404,11 @@ impl<R: BufRead> FrameReader<R> {
     }
 
     /// Takes the frame of the scene as read so far.
-    fn whole(&mut self, name: &Option<SceneName>) -> Option<Frame> {
+    fn take_frame(&mut self, name: &Option<SceneName>) -> Option<Frame> {
         let scene = self.scenes.get_mut(name)?;
         let growing = scene.current.take()?;
         scene.last = Some(growing.frame.number);
         self.unfinished -= growing.frame.pedestrians.len();
         Some(Frame { names: PedestrianNames::new(growing.words), ..growing.frame })
-    }
-
-    fn wrong(&self, problem: impl Into<String>) -> FormatError {
-        FilePlace::line(self.lines).wrong(problem).in_file(&self.origin)
     }
 }

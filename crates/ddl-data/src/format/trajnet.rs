@@ -8,24 +8,25 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
+use crate::class::is_vehicle;
 use crate::clock::TimeUnit;
+use crate::format::fault::{FilePlace, FormatError, Problem};
 use crate::format::field::{self, PedestrianField};
-use crate::format::place::{FilePlace, Misread};
 use crate::format::problem::when;
-use crate::format::row_filter::{RowFilter, UNTRACKED, is_vehicle};
+use crate::format::quoted::quoted;
+use crate::format::row_filter::{RowFilter, UNTRACKED};
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are left out. Identical rows count once.
 #[expect(clippy::float_cmp, reason = "a repeated track is written with the same digits")]
-pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), Misread> {
+pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), FormatError> {
     let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
     let mut others = OtherLines::default();
     for (index, text) in text.lines().enumerate() {
-        let Some(row) = observation(text, index + 1, &mut others)? else {
-            continue;
-        };
+        let observation = observation(text, index + 1, &mut others);
+        let Some(row) = FilePlace::line(index + 1).read(observation)? else { continue };
         let key = match &row.pedestrian {
             PedestrianField::Number(number, _) => PedestrianField::Number(*number, None),
             word @ PedestrianField::Word(_) => word.clone(),
@@ -54,8 +55,8 @@ pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), Misread> 
         return Err(FilePlace::line(1).wrong(problem));
     }
     if rows.is_empty() && text.contains("\"prediction_number\"") {
-        let problem = "the tracks are forecasts (prediction_number), none is observed; score them with `ddl evaluate \
-                       --forecasts`";
+        let problem = "the tracks are forecasts (prediction_number), none is observed; give observed ones, or score \
+                       these as forecasts of another program";
         return Err(FilePlace::line(1).wrong(problem));
     }
     Ok((rows, others))
@@ -71,24 +72,18 @@ pub(super) struct OtherLines {
 
 impl OtherLines {
     #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
-    fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), String> {
-        let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
-            return Ok(());
-        };
+    fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), Problem> {
+        let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else { return Ok(()) };
         let rate = fps.as_f64().filter(|fps| fps.is_finite() && *fps > 0.0);
-        let found = || field::quoted(&fps.to_string());
-        let rate = rate.ok_or_else(|| {
-            let found = found();
-            format!("scene.fps must be a number above 0, the frames in a second, found {found}")
-        })?;
+        let found = || quoted(&fps.to_string());
+        let rate =
+            rate.ok_or_else(|| Problem::value("scene.fps", "a number above 0, the frames in a second", found()))?;
         match self.frames_a_second {
             None => (self.line, self.frames_a_second) = (line, Some(rate)),
             Some(first) if first != rate => {
                 let (found, first_line) = (found(), self.line);
-                return Err(format!(
-                    "scene.fps is {found}, but {first} on line {first_line}; a file holds one recording with one frame \
-                     rate"
-                ));
+                let here = format!("scene.fps is {found}, but {first} on line {first_line}");
+                return Err(format!("{here}; a file holds one recording with one frame rate").into());
             }
             Some(_) => {}
         }
@@ -141,7 +136,7 @@ impl TrackFields {
             return Some(UNTRACKED.to_owned());
         }
         let class = self.class.as_ref()?.as_str().filter(|class| is_vehicle(class))?;
-        Some(format!("of class {}", field::quoted(class)))
+        Some(format!("of class {}", quoted(class)))
     }
 }
 
@@ -150,27 +145,22 @@ fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value
 }
 
 /// The observation of a line, if it holds one. What another line says is kept.
-pub(super) fn observation(text: &str, line: usize, others: &mut OtherLines) -> Result<Option<TrackRow>, Misread> {
-    let place = FilePlace::line(line);
-    place.read(row(text, place, others))
-}
-
-fn row(text: &str, place: FilePlace, others: &mut OtherLines) -> Result<Option<TrackRow>, String> {
+pub(super) fn observation(text: &str, line: usize, others: &mut OtherLines) -> Result<Option<TrackRow>, Problem> {
     if text.trim().is_empty() {
         return Ok(None);
     }
     let wrong = |error: serde_json::Error| not_one_object(&error.to_string());
     if !text.trim_start().starts_with('{') {
         let other: Value = serde_json::from_str(text).map_err(wrong)?;
-        return Err(not_one_object(&format!("found {}", field::quoted(&other.to_string()))));
+        return Err(not_one_object(&format!("found {}", quoted(&other.to_string()))));
     }
-    let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
+    let parts: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
     // A scene that is not an object shows that the file is of another kind.
-    let scene = fields::<SceneFields>(line.scene, "scene")?;
+    let scene = fields::<SceneFields>(parts.scene, "scene")?;
     if let Some(scene) = &scene {
-        others.take(scene, place.line_number())?;
+        others.take(scene, line)?;
     }
-    let Some(track) = fields::<TrackFields>(line.track, "track")? else {
+    let Some(track) = fields::<TrackFields>(parts.track, "track")? else {
         if scene.is_none() {
             others.filter.leave_out("without a track or scene".to_owned());
         }
@@ -183,7 +173,7 @@ fn row(text: &str, place: FilePlace, others: &mut OtherLines) -> Result<Option<T
     let unit = match (&track.t, &track.f) {
         (Some(Value::String(_)), None) => Some(TimeUnit::Dates),
         (Some(_), None) => Some(TimeUnit::Seconds),
-        (Some(_), Some(_)) => return Err("track.f and track.t: give a frame or a time".to_owned()),
+        (Some(_), Some(_)) => return Err("track.f and track.t: give a frame or a time".into()),
         (None, _) => None,
     };
     let when = match track.t {
@@ -199,46 +189,39 @@ fn row(text: &str, place: FilePlace, others: &mut OtherLines) -> Result<Option<T
         None => None,
         Some(Value::String(name)) => Some(SceneName::new(&name).map_err(|error| error.to_string())?),
         Some(other) => {
-            let found = field::quoted(&other.to_string());
-            return Err(format!("track.scene must be a text, such as \"hall\", found {found}"));
+            return Err(Problem::value("track.scene", "a text, such as \"hall\"", quoted(&other.to_string())));
         }
     };
-    Ok(Some(TrackRow { scene, frame, unit, pedestrian, position: [x, y], place }))
+    Ok(Some(TrackRow { scene, frame, unit, pedestrian, position: [x, y], place: FilePlace::line(line) }))
 }
 
 /// A value as in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
-fn written(value: Option<Value>, name: &str) -> Result<String, String> {
-    value.map_or_else(|| Err(format!("{name} is missing")), |value| Ok(value.to_string()))
+fn written(value: Option<Value>, name: &str) -> Result<String, Problem> {
+    Ok(value.ok_or_else(|| format!("{name} is missing"))?.to_string())
 }
 
-fn pedestrian(value: Option<Value>) -> Result<PedestrianField, String> {
+fn pedestrian(value: Option<Value>) -> Result<PedestrianField, Problem> {
     let is_large = |number: f64| number.abs() >= FRAME_LIMIT as f64;
     match value {
         // A quoted pedestrian is a word, even if it holds only digits.
         Some(Value::String(word)) if !word.trim().is_empty() => field::word(word.trim(), "track.p"),
         Some(Value::Number(number)) if number.is_f64() && number.as_f64().is_some_and(is_large) => {
-            Err(format!("track.p {number} has lost digits, as a number of JSON; write it as a text"))
+            Err(format!("track.p {number} has lost digits, as a number of JSON; write it as a text").into())
         }
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p"),
-        other => {
-            let number = field::integer(&written(other, "track.p")?, "track.p")?;
-            Ok(PedestrianField::Number(number, None))
-        }
+        other => Ok(PedestrianField::Number(field::integer(&written(other, "track.p")?, "track.p")?, None)),
     }
 }
 
 /// The fields of a part; `None` where it is missing or null.
-fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str) -> Result<Option<T>, String> {
-    let Some(text) = part.map(RawValue::get) else {
-        return Ok(None);
-    };
+fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str) -> Result<Option<T>, Problem> {
+    let Some(text) = part.map(RawValue::get) else { return Ok(None) };
     if !text.starts_with('{') {
-        return Err(format!("{name} must be a JSON object, found {}", field::quoted(text)));
+        return Err(Problem::value(name, "a JSON object", quoted(text)));
     }
-    let fields = serde_json::from_str(text);
-    fields.map(Some).map_err(|error| not_one_object(&format!("{name}: {error}")))
+    serde_json::from_str(text).map(Some).map_err(|error| not_one_object(&format!("{name}: {error}")))
 }
 
-fn not_one_object(detail: &str) -> String {
-    format!("the line must be one JSON object (which has no NaN and no Infinity): {detail}")
+fn not_one_object(detail: &str) -> Problem {
+    format!("the line must be one JSON object (which has no NaN and no Infinity): {detail}").into()
 }

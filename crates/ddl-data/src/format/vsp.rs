@@ -3,11 +3,11 @@
 use ddl_core::{Position, between};
 
 use crate::format::choice::ColumnChoice;
+use crate::format::fault::{FilePlace, FormatError};
 use crate::format::field;
-use crate::format::place::{FilePlace, Misread};
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
-use crate::format::track_columns::PIXELS;
+use crate::format::track_columns::note_on_pixels;
 
 /// Frames a second of the films.
 const RATE: f64 = 25.0;
@@ -31,7 +31,7 @@ struct ControlPoint {
     line: usize,
 }
 
-pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misread> {
+pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
     let mut splines: Vec<(usize, usize, Vec<ControlPoint>)> = Vec::new();
     let mut promised = None;
     for (line, text) in (1..).zip(text.lines()) {
@@ -65,13 +65,13 @@ pub(super) fn parse(text: &str, choice: &ColumnChoice) -> Result<TextFile, Misre
     let (rows, lost) = rows_of(&splines)?;
     let left_out = (lost > 0)
         .then(|| format!("left out: {lost} splines of one control point, or parts between two more than 20 s apart"));
-    let pixels = (!choice.is_mapped).then(|| PIXELS.to_owned());
+    let pixels = (!choice.is_mapped).then(note_on_pixels);
     let notes = std::iter::once(NOTE.to_owned()).chain(pixels).chain(left_out);
     Ok(TextFile::without_columns(rows, notes, Some(RATE)))
 }
 
 /// The positions of all splines, and the number of parts that are left out.
-fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRow>, usize), Misread> {
+fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRow>, usize), FormatError> {
     let (mut rows, mut lost) = (Vec::new(), 0);
     for (id, (line, count, points)) in (1..).zip(splines) {
         if points.len() != *count {
@@ -87,7 +87,7 @@ fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)]) -> Result<(Vec<TrackRo
 }
 
 /// Adds the positions of a spline at the frames that are multiples of [`STEP`].
-fn along(id: i64, points: &[ControlPoint], rows: &mut Vec<TrackRow>) -> Result<(), Misread> {
+fn along(id: i64, points: &[ControlPoint], rows: &mut Vec<TrackRow>) -> Result<(), FormatError> {
     let begin = rows.len();
     for [before, after] in points.array_windows() {
         let apart = after.frame - before.frame;
@@ -104,12 +104,10 @@ fn along(id: i64, points: &[ControlPoint], rows: &mut Vec<TrackRow>) -> Result<(
                 continue;
             }
             let share = (frame - before.frame) as f64 / apart.max(1) as f64;
-            let position = between(before.position, after.position, share);
-            rows.push(TrackRow::numbered(frame, id, position, place));
+            rows.push(TrackRow::numbered(frame, id, between(before.position, after.position, share), place));
         }
         if rows.len() > MOST_ROWS {
-            let problem = format!("the splines have more than {MOST_ROWS} positions; are the frames right?");
-            return Err(place.wrong(problem));
+            return Err(place.wrong(format!("the splines have more than {MOST_ROWS} positions; are the frames right?")));
         }
     }
     Ok(())

@@ -6,7 +6,7 @@ use ddl_core::PedestrianName;
 use serde_json::json;
 
 use crate::clock::{Clock, FrameNumber, TimeUnit};
-use crate::error::DataError;
+use crate::file_error::DataError;
 use crate::format::kind::Format;
 use crate::observation::Observation;
 use crate::recording::Recording;

@@ -2,9 +2,9 @@
 
 use ddl_core::{OBSERVED, ObservationQuality, Position, TIME_STEP};
 
-use crate::observe::motion::{Motion, Walk};
+use crate::observe::motion::{MotionState, WalkModel};
 use crate::observe::noise::{RecordingNoise, USUAL};
-use crate::observe::track::{ObservedTrack, Row};
+use crate::observe::track::{ObservedTrack, TimedPosition};
 
 /// Largest distance of a row from a step that it is taken for, in steps: 2 ms.
 pub(crate) const ON_STEP: f64 = 0.005;
@@ -15,7 +15,7 @@ const SWAY: f64 = 0.01;
 
 /// What was observed of a pedestrian at a moment.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Observed {
+pub(crate) struct ObservedPositions {
     /// Positions (m), oldest first; the last is that of the moment.
     pub(crate) positions: [Position; OBSERVED],
     pub(crate) quality: ObservationQuality,
@@ -31,7 +31,7 @@ impl ObservedTrack {
         step: f64,
         tick_time: f64,
         recording: &RecordingNoise,
-    ) -> Option<Observed> {
+    ) -> Option<ObservedPositions> {
         if self.rows.len() < FEWEST || self.is_too_fast(recording, tick_time) {
             return None;
         }
@@ -42,9 +42,9 @@ impl ObservedTrack {
         let mut positions = [[0.0; 2]; OBSERVED];
         let mut quality = ObservationQuality::default();
         if on_steps.iter().any(Option::is_none) {
-            let Walk { noise, agility } = level.walk();
+            let WalkModel { noise, agility } = level.walk();
             let noise = noise.max(SWAY);
-            let motions = self.motions_at(&steps, tick_time, Walk { noise, agility });
+            let motions = self.motions_at(&steps, tick_time, WalkModel { noise, agility });
             positions = motions.map(|motion| motion.position);
             let clean = clean_motion(agility);
             let excess = |variance: f64, clean: f64| (variance - clean).max(0.0).sqrt();
@@ -60,17 +60,17 @@ impl ObservedTrack {
             *position = row.map_or(*position, |row| row.position);
         }
         let finite = positions.as_flattened().iter().all(|coordinate| coordinate.is_finite());
-        finite.then_some(Observed { positions, quality })
+        finite.then_some(ObservedPositions { positions, quality })
     }
 
-    fn row_at(&self, time: f64, tolerance: f64) -> Option<&Row> {
+    fn row_at(&self, time: f64, tolerance: f64) -> Option<&TimedPosition> {
         let after = self.rows.partition_point(|row| row.time < time - tolerance);
         let near = self.rows.range(after..).take_while(|row| row.time <= time + tolerance);
         near.min_by(|a, b| (a.time - time).abs().total_cmp(&(b.time - time).abs()))
     }
 
     /// The smoothed motion at ascending times.
-    fn motions_at(&self, times: &[f64; OBSERVED], tick_time: f64, walk: Walk) -> [Motion; OBSERVED] {
+    fn motions_at(&self, times: &[f64; OBSERVED], tick_time: f64, walk: WalkModel) -> [MotionState; OBSERVED] {
         let first = self.rows[0];
         let later = times.iter().filter(|time| **time > first.time).map(|&time| (time, None));
         let rows = self.rows.iter().map(|row| (row.time, Some(row.position)));
@@ -78,7 +78,7 @@ impl ObservedTrack {
         // A row before a step at the same time.
         moments.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut motions = Vec::with_capacity(moments.len());
-        let mut motion = Motion::first_seen(first.position, walk);
+        let mut motion = MotionState::first_seen(first.position, walk);
         for (index, &(time, position)) in moments.iter().enumerate() {
             if index > 0 {
                 motion = motion.expected_after((time - moments[index - 1].0) * tick_time);
@@ -103,8 +103,8 @@ impl ObservedTrack {
 }
 
 /// The motion of a pedestrian so agile after a row of a usual tracker at each of the 8 steps.
-fn clean_motion(agility: f64) -> Motion {
-    let walk = Walk { noise: USUAL, agility };
-    let first = Motion::first_seen([0.0; 2], walk);
+fn clean_motion(agility: f64) -> MotionState {
+    let walk = WalkModel { noise: USUAL, agility };
+    let first = MotionState::first_seen([0.0; 2], walk);
     (1..OBSERVED).fold(first, |motion, _| motion.expected_after(TIME_STEP).corrected([0.0; 2], walk.noise))
 }

@@ -38,8 +38,7 @@ pub(crate) fn exchanged(rows: impl Iterator<Item = (PedestrianId, Position, Expe
     let mut exchanged = Vec::new();
     for (index, one) in surprises.iter().enumerate() {
         let other = surprises[index + 1..].iter().find(|other| {
-            let crossed = is_there(one, other).zip(is_there(other, one));
-            crossed.is_some_and(|(a, b)| BETTER * (a + b) < one.off + other.off)
+            is_there(one, other).zip(is_there(other, one)).is_some_and(|(a, b)| BETTER * (a + b) < one.off + other.off)
         });
         if let Some(other) = other {
             exchanged.extend([one, other].map(|surprise| (surprise.id, surprise.off)));

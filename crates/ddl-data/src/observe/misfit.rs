@@ -29,8 +29,7 @@ impl Misfit {
     /// A sentence about these rows, `None` without any; `place` names a row.
     pub fn words(misfits: &[Self], place: impl Fn(&Self) -> String) -> Option<String> {
         let first = misfits.first()?;
-        let jumps = misfits.iter().filter(|misfit| misfit.treatment == MisfitTreatment::BegunAnew);
-        let jumps = jumps.count();
+        let jumps = misfits.iter().filter(|misfit| misfit.treatment == MisfitTreatment::BegunAnew).count();
         let left_out = match misfits.len() - jumps {
             0 => None,
             1 => Some("1 position is left out as implausible".to_owned()),

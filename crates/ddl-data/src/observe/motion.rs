@@ -7,7 +7,7 @@ const UNSEEN_VELOCITY: f64 = 2.0;
 
 /// How a pedestrian is taken to move and to be seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Walk {
+pub(super) struct WalkModel {
     /// Standard deviation of a coordinate of a row (m).
     pub(super) noise: f64,
     /// Spectral density of the accelerations (m²/s³).
@@ -16,7 +16,7 @@ pub(super) struct Walk {
 
 /// Position and velocity with their covariance, which is the same on both axes: a state of a Kalman filter.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Motion {
+pub(super) struct MotionState {
     pub(super) position: Position,
     velocity: [f64; 2],
     /// Variance of a coordinate (m²).
@@ -28,9 +28,9 @@ pub(super) struct Motion {
     agility: f64,
 }
 
-impl Motion {
+impl MotionState {
     /// The motion after the first row of a track, whose position has this standard deviation (m).
-    pub(super) fn first_seen(position: Position, Walk { noise, agility }: Walk) -> Self {
+    pub(super) fn first_seen(position: Position, WalkModel { noise, agility }: WalkModel) -> Self {
         Self {
             position,
             velocity: [0.0; 2],

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use ddl_core::Position;
 
-use crate::observe::motion::{Motion, Walk};
+use crate::observe::motion::{MotionState, WalkModel};
 
 /// The standard deviations (m, on each axis) among which the noise is chosen.
 const NOISE: [f64; 12] = [0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4];
@@ -46,7 +46,7 @@ pub struct RecordingNoise {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TrackNoise {
     evidence: Evidence,
-    motions: [Motion; LEVELS],
+    motions: [MotionState; LEVELS],
     rows: usize,
 }
 
@@ -54,8 +54,8 @@ pub(super) struct TrackNoise {
 pub(super) struct NoiseLevel(usize);
 
 impl NoiseLevel {
-    pub(super) fn walk(self) -> Walk {
-        Walk { noise: NOISE[self.0 % NOISE.len()], agility: AGILITY[self.0 / NOISE.len()] }
+    pub(super) fn walk(self) -> WalkModel {
+        WalkModel { noise: NOISE[self.0 % NOISE.len()], agility: AGILITY[self.0 / NOISE.len()] }
     }
 
     /// Whether positions are taken as they are.
@@ -86,13 +86,13 @@ impl TrackNoise {
     pub(super) fn of_first(position: Position) -> Self {
         Self {
             evidence: [0.0; LEVELS],
-            motions: NoiseLevel::all().map(|level| Motion::first_seen(position, level.walk())),
+            motions: NoiseLevel::all().map(|level| MotionState::first_seen(position, level.walk())),
             rows: 1,
         }
     }
 
     /// The motion at the last row, at a level.
-    pub(super) fn motion(&self, level: NoiseLevel) -> &Motion {
+    pub(super) fn motion(&self, level: NoiseLevel) -> &MotionState {
         &self.motions[level.0]
     }
 
@@ -114,7 +114,7 @@ impl TrackNoise {
         let keep = (-seconds / RECENT).exp();
         for level in 0..LEVELS {
             self.evidence[level] *= keep;
-            let Walk { noise, .. } = NoiseLevel(level).walk();
+            let WalkModel { noise, .. } = NoiseLevel(level).walk();
             let expected = self.motions[level].expected_after(seconds);
             if counts {
                 let variance = expected.variance + noise * noise;
@@ -132,7 +132,7 @@ impl TrackNoise {
 /// What each level must be likelier by than the usual one.
 static UNUSUAL: LazyLock<Evidence> = LazyLock::new(|| {
     NoiseLevel::all().map(|level| {
-        let Walk { noise, agility } = level.walk();
+        let WalkModel { noise, agility } = level.walk();
         CERTAINTY * (noise / USUAL).ln().powi(2) + (agility / USUAL_AGILITY).ln().powi(2)
     })
 });

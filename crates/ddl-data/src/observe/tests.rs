@@ -6,15 +6,15 @@ use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
-use crate::observe::estimate::Observed;
-use crate::observe::{ObservedTrack, RecordingNoise, Row};
+use crate::observe::estimate::ObservedPositions;
+use crate::observe::{ObservedTrack, RecordingNoise, TimedPosition};
 
-fn observed(rows: &[(f64, Position)], time: f64) -> Observed {
+fn observed(rows: &[(f64, Position)], time: f64) -> ObservedPositions {
     let mut noise = RecordingNoise::default();
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
         track.forget_before(time, 0.4);
-        track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
+        track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
     }
     track.observed(time, 0.4, 1.0, &noise).unwrap()
 }
@@ -32,8 +32,7 @@ fn noisy(rows: &[(f64, Position)], deviation: f64, seed: u64) -> Vec<(f64, Posit
 }
 
 fn farthest(a: &[Position], b: &[Position]) -> f64 {
-    let distances = a.iter().zip(b).map(|(a, b)| distance(*a, *b));
-    distances.fold(0.0, f64::max)
+    a.iter().zip(b).map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max)
 }
 
 /// A hundred pedestrians at 10 rows a second: the noise that is measured is the noise that was added.
@@ -45,7 +44,7 @@ fn noise_is_measured() {
             let rows = noisy(&walk((0..30).map(|k| 0.1 * f64::from(k))), added, seed);
             let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
             for &(time, position) in &rows[1..] {
-                track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
+                track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
             }
         }
         assert!(measured.contains(&noise.metres()), "{added}: {}", noise.metres());
@@ -88,7 +87,7 @@ fn the_rows_that_are_kept_are_bounded() {
     let mut noise = RecordingNoise::default();
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
-        track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
+        track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
         track.forget_before(time, 0.4);
         assert!(track.rows.len() <= 2300, "{}", track.rows.len());
         let observed = track.observed(time, 0.4, 1.0, &noise);
@@ -119,8 +118,7 @@ fn rows_that_go_on_from_a_jump_are_another_track() {
         let first = walk((0..20).map(|k| interval * f64::from(k)));
         let again = first[19].0 + gap;
         let second = walk((0..6).map(|k| again + interval * f64::from(k)));
-        let moved = second.into_iter().map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]]));
-        let moved: Vec<_> = moved.collect();
+        let moved: Vec<_> = second.into_iter().map(|(time, [x, y])| (time, [x + jump[0], y + jump[1]])).collect();
         let seen = observed(&[first, moved].concat(), again + 5.0 * interval);
         let [.., before, last] = seen.positions;
         let speed = distance(before, last) / 0.4;

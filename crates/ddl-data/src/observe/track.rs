@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use ddl_core::{OBSERVED, Position, between, distance as distance_between};
 
 use crate::observe::misfit::MisfitTreatment;
-use crate::observe::motion::Motion;
+use crate::observe::motion::MotionState;
 use crate::observe::noise::{NoiseLevel, RecordingNoise, TrackNoise};
 
 /// Distance between an expected and a true position that no noise explains (m) ...
@@ -39,7 +39,7 @@ const EARLIER: f64 = 4.0;
 
 /// A position of a track at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Row {
+pub(crate) struct TimedPosition {
     /// In ticks.
     pub(crate) time: f64,
     pub(crate) position: Position,
@@ -57,18 +57,18 @@ const MOST_SUSPECTS: usize = 512;
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ObservedTrack {
     /// Rows since the track began; never empty.
-    pub(super) rows: VecDeque<Row>,
+    pub(super) rows: VecDeque<TimedPosition>,
     pub(super) noise: TrackNoise,
     /// The fastest speed of late.
-    pace: Pace,
+    pace: FastestSpeed,
     /// If the last row was taken for a sudden turn: the noise before it.
-    turned: Option<Box<Turn>>,
+    turned: Option<Box<SuddenTurn>>,
     /// Rows left out since the last one that was not: the beginning of another track?
     suspects: Vec<Suspect>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Pace {
+struct FastestSpeed {
     /// m/s.
     speed: f64,
     /// In ticks.
@@ -76,7 +76,7 @@ struct Pace {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Turn {
+struct SuddenTurn {
     before: TrackNoise,
     /// Distance of the row from where the pedestrian was expected (m).
     distance: f64,
@@ -84,7 +84,7 @@ struct Turn {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Suspect {
-    row: Row,
+    row: TimedPosition,
     /// Distance from where the pedestrian was expected (m).
     distance: f64,
 }
@@ -112,11 +112,11 @@ impl ObservedTrack {
     /// A track that begins.
     #[must_use]
     pub(crate) fn beginning(time: f64, position: Position) -> Self {
-        let row = Row { time, position };
+        let row = TimedPosition { time, position };
         Self {
             rows: [row].into(),
             noise: TrackNoise::of_first(position),
-            pace: Pace { speed: 0.0, time },
+            pace: FastestSpeed { speed: 0.0, time },
             turned: None,
             suspects: Vec::new(),
         }
@@ -128,7 +128,7 @@ impl ObservedTrack {
     /// before), how far off (m) it is, and how it is treated.
     pub(crate) fn push(
         &mut self,
-        row: Row,
+        row: TimedPosition,
         tick_time: f64,
         known: &RecordingNoise,
         recording: &mut RecordingNoise,
@@ -140,7 +140,7 @@ impl ObservedTrack {
         let fit = self.fit(row, tick_time, known);
         if (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time, known) {
             self.suspects.clear();
-            let turn = || Turn { before: self.noise.clone(), distance: fit.distance };
+            let turn = || SuddenTurn { before: self.noise.clone(), distance: fit.distance };
             self.turned = (!fit.is_expected).then(|| Box::new(turn()));
             self.accept(row, tick_time, known, recording);
             return None;
@@ -170,14 +170,14 @@ impl ObservedTrack {
     }
 
     /// The motion expected some seconds after the last row, and how far off a row may be then for its noise (m).
-    fn expected_after(&self, seconds: f64, known: &RecordingNoise) -> (Motion, f64) {
+    fn expected_after(&self, seconds: f64, known: &RecordingNoise) -> (MotionState, f64) {
         let level = self.level(known);
         let expected = self.noise.motion(level).expected_after(seconds);
         let noise = level.walk().noise;
         (expected, DEVIATIONS * (expected.variance + noise * noise).sqrt())
     }
 
-    fn fit(&self, row: Row, tick_time: f64, known: &RecordingNoise) -> Fit {
+    fn fit(&self, row: TimedPosition, tick_time: f64, known: &RecordingNoise) -> Fit {
         let seconds = (row.time - self.last_time()) * tick_time;
         let (expected, margin) = self.expected_after(seconds, known);
         let distance = expected.distance(row.position);
@@ -203,7 +203,7 @@ impl ObservedTrack {
 
     /// Whether a row is nearer to the continuation of the last doubtful row than to the position expected of the track,
     /// which is `distance` (m) away.
-    fn goes_on(&self, row: Row, distance: f64, tick_time: f64, known: &RecordingNoise) -> bool {
+    fn goes_on(&self, row: TimedPosition, distance: f64, tick_time: f64, known: &RecordingNoise) -> bool {
         if distance <= SURPRISE {
             return false;
         }
@@ -226,7 +226,7 @@ impl ObservedTrack {
     /// Leaves a row out, or begins anew where rows agree.
     fn doubt(
         &mut self,
-        row: Row,
+        row: TimedPosition,
         distance: f64,
         tick_time: f64,
         known: &RecordingNoise,
@@ -300,15 +300,14 @@ impl ObservedTrack {
         }
     }
 
-    fn accept(&mut self, row: Row, tick_time: f64, known: &RecordingNoise, recording: &mut RecordingNoise) {
-        let seconds = (row.time - self.last_time()) * tick_time;
-        self.noise.add(row.position, seconds, recording);
+    fn accept(&mut self, row: TimedPosition, tick_time: f64, known: &RecordingNoise, recording: &mut RecordingNoise) {
+        self.noise.add(row.position, (row.time - self.last_time()) * tick_time, recording);
         self.leave_out_close(tick_time);
         self.rows.push_back(row);
         let speed = self.noise.motion(self.level(known)).speed();
         let is_old = (row.time - self.pace.time) * tick_time > RECENT;
         if is_old || speed >= self.pace.speed {
-            self.pace = Pace { speed, time: row.time };
+            self.pace = FastestSpeed { speed, time: row.time };
         }
     }
 }

@@ -6,7 +6,7 @@ use rand_distr::{Distribution, StandardNormal};
 
 use crate::observation::Observation;
 use crate::simulate::force::{self, BODY, WalkingMotion};
-use crate::simulate::layout::{Leg, SceneLayout};
+use crate::simulate::layout::{RouteLeg, SceneLayout};
 use crate::simulate::pedestrian::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
 use crate::simulate::population::{self, Party};
 use crate::simulate::vector::{add, norm, scale, sub, unit};
@@ -24,9 +24,8 @@ const ENTRY_CLEARANCE: f64 = 0.7;
 
 /// Runs a scene for `steps` recorded steps of 0.4 s.
 pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Vec<Observation> {
-    let end = WARM_UP + steps as f64 * TIME_STEP;
-    let parties = population::draw(layout, end, rng);
-    let mut engine = Engine { layout, parties, waiting: Vec::new(), pedestrians: Vec::new(), next: 0, last_id: 0 };
+    let parties = population::draw(layout, WARM_UP + steps as f64 * TIME_STEP, rng);
+    let mut engine = CrowdEngine { layout, parties, waiting: Vec::new(), pedestrians: Vec::new(), next: 0, last_id: 0 };
     let mut observations = Vec::new();
     let warm_up = (WARM_UP / DT).round() as i64;
     for tick in 0..warm_up + steps * SUBSTEPS {
@@ -42,7 +41,7 @@ pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Vec
     observations
 }
 
-struct Engine<'a> {
+struct CrowdEngine<'a> {
     layout: &'a SceneLayout,
     parties: Vec<Party>,
     /// Indices of the parties that are due but found their entry occupied.
@@ -52,7 +51,7 @@ struct Engine<'a> {
     last_id: i64,
 }
 
-impl Engine<'_> {
+impl CrowdEngine<'_> {
     fn admit(&mut self, time: f64) {
         while self.parties.get(self.next).is_some_and(|party| party.time <= time) {
             self.waiting.push(self.next);
@@ -90,8 +89,7 @@ impl Engine<'_> {
         let before: Vec<WalkingMotion> = self.pedestrians.iter().map(|w| w.motion).collect();
         for index in 0..self.pedestrians.len() {
             let speed = self.parties[self.pedestrians[index].party].speed;
-            let acceleration = self.acceleration(index, &before);
-            let velocity = add(before[index].velocity, scale(acceleration, DT));
+            let velocity = add(before[index].velocity, scale(self.acceleration(index, &before), DT));
             let liveliness = (0.2 + norm(velocity) / speed).min(1.0) * RESTLESSNESS * DT.sqrt();
             let [x, y]: [f64; 2] = [StandardNormal.sample(rng), StandardNormal.sample(rng)];
             let velocity = add(velocity, scale([x, y], liveliness));
@@ -138,7 +136,7 @@ impl Engine<'_> {
         centre = scale(centre, 1.0 / f64::from(size));
         let party = &self.parties[pedestrian.party];
         let legs = &self.layout.routes[party.route].legs;
-        let standing = matches!(legs[pedestrian.leg], Leg::Stand(_)) && pedestrian.is_within(ARRIVED);
+        let standing = matches!(legs[pedestrian.leg], RouteLeg::Stand(_)) && pedestrian.is_within(ARRIVED);
         if size > 1 && !standing {
             total = add(total, force::cohesion(me, centre, party.members.len()));
         }

@@ -2,7 +2,7 @@
 
 use ddl_core::Position;
 
-use crate::simulate::obstacle::{Line, Pillar};
+use crate::simulate::obstacle::{Pillar, Segment};
 use crate::simulate::vector::{add, cross, dot, left, norm, scale, sub, unit};
 
 /// Radius of a body (m).
@@ -72,17 +72,14 @@ pub(super) fn stranger(pedestrian: WalkingMotion, other: WalkingMotion, other_ra
     let angle = cross(ahead, towards).atan2(dot(ahead, towards)) + reach * SIDE;
     let falloff = STRENGTH * (-gap / reach).exp();
     let narrowed = |width: f64| falloff * (-(width * reach * angle).powi(2)).exp();
-    let brake = scale(ahead, -narrowed(BRAKING));
-    let turn = scale(left(ahead), -angle.signum() * narrowed(TURNING));
-    add(brake, turn)
+    add(scale(ahead, -narrowed(BRAKING)), scale(left(ahead), -angle.signum() * narrowed(TURNING)))
 }
 
 pub(super) fn pillar(pedestrian: WalkingMotion, pillar: &Pillar) -> Position {
-    let still = WalkingMotion { position: pillar.centre, velocity: [0.0, 0.0] };
-    stranger(pedestrian, still, pillar.radius)
+    stranger(pedestrian, WalkingMotion { position: pillar.centre, velocity: [0.0, 0.0] }, pillar.radius)
 }
 
-pub(super) fn wall(pedestrian: WalkingMotion, wall: &Line) -> Position {
+pub(super) fn wall(pedestrian: WalkingMotion, wall: &Segment) -> Position {
     let away = sub(pedestrian.position, wall.nearest(pedestrian.position));
     let gap = norm(away) - BODY;
     scale(unit(away), WALL_STRENGTH * (-gap.max(0.0) / WALL_REACH).exp())
@@ -118,8 +115,7 @@ mod tests {
 0 0 1 0      6.5 0 0 0          0.3  -0.01444283   -0.01466395
 ";
         for case in cases.trim().lines() {
-            let numbers = case.split_whitespace().map(|n| n.parse().unwrap());
-            let n: Vec<f64> = numbers.collect();
+            let n: Vec<f64> = case.split_whitespace().map(|n| n.parse().unwrap()).collect();
             let moving =
                 |from: usize| WalkingMotion { position: [n[from], n[from + 1]], velocity: [n[from + 2], n[from + 3]] };
             let force = stranger(moving(0), moving(4), n[8]);

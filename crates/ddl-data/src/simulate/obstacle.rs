@@ -6,7 +6,7 @@ use crate::simulate::vector::{add, dot, left, norm, scale, sub, unit};
 
 /// A straight line between two points (m): a wall without thickness, or a gate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Line {
+pub(super) struct Segment {
     pub(super) a: Position,
     pub(super) b: Position,
 }
@@ -20,7 +20,7 @@ pub(super) struct Pillar {
     pub(super) radius: f64,
 }
 
-impl Line {
+impl Segment {
     pub(super) const fn new(a: Position, b: Position) -> Self {
         Self { a, b }
     }
@@ -47,8 +47,7 @@ impl Line {
         if length_squared == 0.0 {
             return self.a;
         }
-        let share = (dot(sub(p, self.a), along) / length_squared).clamp(0.0, 1.0);
-        add(self.a, scale(along, share))
+        add(self.a, scale(along, (dot(sub(p, self.a), along) / length_squared).clamp(0.0, 1.0)))
     }
 
     /// `p`, moved out of the wall far enough for a body of this radius.

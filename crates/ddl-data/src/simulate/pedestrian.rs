@@ -3,7 +3,7 @@
 use ddl_core::{PedestrianId, Position, TIME_STEP};
 
 use crate::simulate::force::WalkingMotion;
-use crate::simulate::layout::Leg;
+use crate::simulate::layout::RouteLeg;
 use crate::simulate::vector::{add, dot, norm, scale, sub, unit};
 
 /// Integration steps per step of 0.4 s.
@@ -38,10 +38,9 @@ impl SimulatedPedestrian {
     }
 
     /// The current desired velocity (m/s).
-    pub(super) fn desired(&self, legs: &[Leg], speed: f64, centre: Position) -> Position {
-        let target = self.targets[self.leg];
-        let way = sub(self.aim(legs, target), self.motion.position);
-        if matches!(legs[self.leg], Leg::Stand(_)) && norm(way) < 2.0 * ARRIVED {
+    pub(super) fn desired(&self, legs: &[RouteLeg], speed: f64, centre: Position) -> Position {
+        let way = sub(self.aim(legs, self.targets[self.leg]), self.motion.position);
+        if matches!(legs[self.leg], RouteLeg::Stand(_)) && norm(way) < 2.0 * ARRIVED {
             // Slow down smoothly, then stand.
             return scale(way, speed.min(0.8));
         }
@@ -51,17 +50,17 @@ impl SimulatedPedestrian {
     }
 
     /// The point to aim at: beyond a gate, so that the pedestrian walks through it.
-    fn aim(&self, legs: &[Leg], target: Position) -> Position {
+    fn aim(&self, legs: &[RouteLeg], target: Position) -> Position {
         match legs[self.leg] {
-            Leg::Stand(_) => target,
-            Leg::Pass(gate) => add(target, scale(gate.beyond(self.leg_start), 0.8)),
+            RouteLeg::Stand(_) => target,
+            RouteLeg::Pass(gate) => add(target, scale(gate.beyond(self.leg_start), 0.8)),
         }
     }
 
-    pub(super) fn advance(&mut self, legs: &[Leg]) {
+    pub(super) fn advance(&mut self, legs: &[RouteLeg]) {
         let done = match legs[self.leg] {
-            Leg::Pass(gate) => dot(sub(self.motion.position, gate.a), gate.beyond(self.leg_start)) > 0.0,
-            Leg::Stand(_) => {
+            RouteLeg::Pass(gate) => dot(sub(self.motion.position, gate.a), gate.beyond(self.leg_start)) > 0.0,
+            RouteLeg::Stand(_) => {
                 if self.is_within(CLOSE_BY) {
                     self.rest_left -= DT;
                 }

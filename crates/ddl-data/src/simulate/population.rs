@@ -5,8 +5,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp, Normal};
 
-use crate::simulate::layout::{Leg, SceneLayout};
-use crate::simulate::obstacle::Line;
+use crate::simulate::layout::{RouteLeg, SceneLayout};
+use crate::simulate::obstacle::Segment;
 use crate::simulate::vector::{norm, sub};
 
 /// Mean and standard deviation of the desired speed of a lone pedestrian (m/s): Helbing and Molnár 1995.
@@ -72,8 +72,8 @@ fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     let mut targets = vec![Vec::new(); size];
     for leg in &chosen.legs {
         let places = match *leg {
-            Leg::Pass(gate) => side_by_side(gate, size, across),
-            Leg::Stand(line) => in_a_ring(line.at(rng.random_range(0.0..1.0)), size, rng),
+            RouteLeg::Pass(gate) => side_by_side(gate, size, across),
+            RouteLeg::Stand(line) => in_a_ring(line.at(rng.random_range(0.0..1.0)), size, rng),
         };
         for (target, place) in targets.iter_mut().zip(places) {
             target.push(place);
@@ -97,7 +97,7 @@ fn choose_route(layout: &SceneLayout, rng: &mut ChaCha8Rng) -> usize {
 }
 
 /// Places across a gate for a group of this size, away from the gate's ends where it is wide enough.
-fn side_by_side(gate: Line, size: usize, across: f64) -> Vec<Position> {
+fn side_by_side(gate: Segment, size: usize, across: f64) -> Vec<Position> {
     let room = (gate.width() - 2.0 * GATE_MARGIN).max(0.0);
     let spacing = GROUP_SPACING.min(room / size as f64);
     let span = spacing * (size - 1) as f64;

@@ -5,24 +5,28 @@ use ddl_core::{Position, TIME_STEP, distance};
 use crate::dataset::Dataset;
 use crate::recording::Recording;
 use crate::simulate::layout::{SCENES, SceneLayout};
-use crate::simulate::obstacle::Line;
+use crate::simulate::obstacle::Segment;
 use crate::simulate::vector::{cross, sub};
 
 const SEED: u64 = 1;
 
-struct Crowd {
+struct SimulatedScene {
     scene: &'static str,
     layout: SceneLayout,
     recording: Recording,
 }
 
-fn crowds() -> impl Iterator<Item = Crowd> {
+fn crowds() -> impl Iterator<Item = SimulatedScene> {
     let recordings = Dataset::simulated(SEED).recordings().to_vec();
-    SCENES.into_iter().zip(recordings).map(|((scene, layout), recording)| Crowd { scene, layout: layout(), recording })
+    SCENES.into_iter().zip(recordings).map(|((scene, layout), recording)| SimulatedScene {
+        scene,
+        layout: layout(),
+        recording,
+    })
 }
 
 /// Whether the straight line from `a` to `b` (m) crosses the wall.
-fn is_blocked(wall: &Line, a: Position, b: Position) -> bool {
+fn is_blocked(wall: &Segment, a: Position, b: Position) -> bool {
     let (way, along) = (sub(b, a), sub(wall.b, wall.a));
     let side = |p| cross(along, sub(p, wall.a));
     let other = |p| cross(way, sub(p, a));
@@ -30,14 +34,14 @@ fn is_blocked(wall: &Line, a: Position, b: Position) -> bool {
 }
 
 /// Successive positions of every pedestrian (m), 0.4 s apart.
-fn tracks(crowd: &Crowd) -> Vec<Vec<Position>> {
+fn tracks(crowd: &SimulatedScene) -> Vec<Vec<Position>> {
     let recording = &crowd.recording;
     let positions = |id| recording.track(id).iter().map(|o| o.position).collect();
     recording.pedestrians().into_iter().map(positions).collect()
 }
 
 /// Speed of every pedestrian between successive positions (m/s).
-fn speeds(crowd: &Crowd) -> Vec<f64> {
+fn speeds(crowd: &SimulatedScene) -> Vec<f64> {
     let steps = |track: &Vec<Position>| track.windows(2).map(|w| distance(w[0], w[1]) / TIME_STEP).collect::<Vec<_>>();
     tracks(crowd).iter().flat_map(steps).collect()
 }
@@ -74,7 +78,7 @@ fn speeds_are_plausible() {
 #[test]
 fn no_pedestrian_crosses_an_obstacle_or_is_stuck() {
     for crowd in crowds() {
-        let Crowd { scene, layout, .. } = &crowd;
+        let SimulatedScene { scene, layout, .. } = &crowd;
         for track in tracks(&crowd) {
             for pair in track.windows(2) {
                 let blocked = layout.walls.iter().any(|wall| is_blocked(wall, pair[0], pair[1]));

@@ -48,8 +48,7 @@ proptest! {
 #[test]
 fn invalid_clocks_and_extreme_frames_are_refused() {
     for seconds in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-12, 400.1] {
-        let error = Clock::with_frame_time(seconds);
-        assert!(matches!(error, Err(ClockError::FrameTime { .. })), "{seconds}");
+        assert!(matches!(Clock::with_frame_time(seconds), Err(ClockError::FrameTime { .. })), "{seconds}");
     }
     assert!(Clock::with_frame_time(400.0).is_ok());
     for found in [0, -1, (1 << 31) + 1] {
@@ -80,8 +79,7 @@ fn a_recording_is_counted_in_ticks_unless_its_rows_are_too_far_apart() {
     assert!(at(0.4).is_ok() && at(0.000_34).is_ok());
     assert!(matches!(at(0.000_33), Err(ClockError::TooFast { .. })));
     assert!(matches!(at(0.41), Err(ClockError::TooSlow { apart }) if apart > 1.2));
-    let far = pedestrian((1 << 52)..(1 << 52) + 20);
-    let refused = far.on_clock(Clock::with_frame_time(1.0 / 24.0).unwrap());
+    let refused = pedestrian((1 << 52)..(1 << 52) + 20).on_clock(Clock::with_frame_time(1.0 / 24.0).unwrap());
     assert_eq!(refused, Err(ClockError::Frame { frame: 1 << 52, ticks: 5 }));
 }
 
@@ -112,8 +110,7 @@ fn scenes_of_trajnet_state_the_frame_rate() {
     let recording = read(&two);
     let clock = recording.stated_clock().unwrap().unwrap();
     assert_eq!((clock.tick(1), clock.frame_step()), (Ok(5), 48));
-    let recording = recording.on_clock(clock).unwrap();
-    let windows = recording.observed_windows();
+    let windows = recording.on_clock(clock).unwrap().observed_windows();
     let speed = |track: &[[f64; 2]]| (track[7][0] - track[0][0]) / 2.8;
     let speeds: Vec<f64> = windows.iter().map(|window| speed(window.observed(0))).collect();
     assert!(speeds.len() == 24 && speeds.iter().all(|speed| (speed - 1.3).abs() < 0.02), "{speeds:?}");

@@ -25,8 +25,7 @@ proptest! {
         let mut rows = Vec::new();
         for frame in 0..2 * exchange {
             let time = (frame - exchange) as f64 / rate;
-            let seen = [[speed * time, 0.0], [other * time, apart]];
-            for (pedestrian, at) in seen.into_iter().enumerate() {
+            for (pedestrian, at) in [[speed * time, 0.0], [other * time, apart]].into_iter().enumerate() {
                 let number = pedestrian as i64 ^ i64::from(is_exchanged && frame >= exchange);
                 let at = at.map(|coordinate| coordinate + normal.sample(&mut random));
                 rows.push(Observation::new(frame, PedestrianId(number), at));

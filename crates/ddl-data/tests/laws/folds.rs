@@ -23,8 +23,7 @@ fn check_splits(dataset: &Dataset) {
                     let is_of_recording = |w: &&Window| w.recording() == recording.name();
                     let frames = split.training.iter().filter(is_of_recording).flat_map(Window::frames);
                     let last = frames.max();
-                    let frames = split.validation.iter().filter(is_of_recording).flat_map(Window::frames);
-                    let first = frames.min();
+                    let first = split.validation.iter().filter(is_of_recording).flat_map(Window::frames).min();
                     if let (Some(last), Some(first)) = (last, first) {
                         assert!(last < first, "{}: {last} and {first}", recording.name());
                     }
@@ -61,8 +60,7 @@ fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
     let split = apart.training_split(rule, 0.25);
     let is_crossing = |w: &&Window| w.recording() == "crossing";
     let of_crossing = split.validation.iter().filter(is_crossing).cloned();
-    let whole = dataset.recording("crossing").unwrap().windows(rule);
-    assert_eq!(of_crossing.collect::<Vec<_>>(), whole);
+    assert_eq!(of_crossing.collect::<Vec<_>>(), dataset.recording("crossing").unwrap().windows(rule));
     assert!(!apart.training_windows(rule).iter().any(|w| is_crossing(&w)));
     let mut others = fold.training_split(rule, 0.25).training;
     others.retain(|w| !is_crossing(&w));
@@ -87,9 +85,7 @@ const PUBLISHED_PARTS: [(&str, usize, usize, i64); 8] = [
 
 #[test]
 fn the_social_gan_split_is_that_of_the_published_files() {
-    let Some(dataset) = recordings::load(Convention::SocialGan) else {
-        return;
-    };
+    let Some(dataset) = recordings::load(Convention::SocialGan) else { return };
     assert_eq!(dataset.recordings().len(), PUBLISHED_PARTS.len());
     for (name, training, validation, first) in PUBLISHED_PARTS {
         let rows = dataset.recording(name).unwrap().observations();
@@ -136,9 +132,7 @@ fn folds_never_train_on_what_they_test_on() {
 #[test]
 fn a_memory_of_the_place_holds_only_other_training_recordings() {
     for convention in [Convention::Star, Convention::SocialGan] {
-        let Some(dataset) = recordings::load(convention) else {
-            return;
-        };
+        let Some(dataset) = recordings::load(convention) else { return };
         let names = |recordings: &[&Recording]| -> BTreeSet<String> {
             recordings.iter().map(|r| r.name().to_owned()).collect()
         };
@@ -162,8 +156,7 @@ fn a_memory_of_the_place_holds_only_other_training_recordings() {
                 _ => &[],
             };
             assert!(of_test.iter().eq(expected), "{}", fold.name());
-            let confirmed = fold.place_memory_confirmed_by();
-            assert!(confirmed.iter().all(|name| of_test.contains(name)));
+            assert!(fold.place_memory_confirmed_by().iter().all(|name| of_test.contains(name)));
         }
     }
 }

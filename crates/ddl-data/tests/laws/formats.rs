@@ -223,5 +223,5 @@ fn columns_are_chosen_where_there_are_any() {
     assert_eq!(ColumnChoice::default().with_columns(given).unwrap().to_string(), given);
     let stream = FrameReader::new(&br#"{"track":{"f":0,"p":1,"x":2,"y":3}}"#[..], "t");
     let refused = stream.with_columns(chosen("t unit=cm").1).next_frame().unwrap_err();
-    assert!(refused.to_string().contains("leave out --columns"), "{refused}");
+    assert!(refused.to_string().contains("leave out columns"), "{refused}");
 }

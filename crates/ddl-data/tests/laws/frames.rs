@@ -63,18 +63,14 @@ proptest! {
 
 #[test]
 fn real_recordings_are_read_back() {
-    let Some(dataset) = recordings::load(Convention::Star) else {
-        return;
-    };
+    let Some(dataset) = recordings::load(Convention::Star) else { return };
     check(&dataset.recordings()[0]);
 }
 
 #[test]
 fn an_empty_line_ends_a_frame_at_once() {
-    let numbers = |text: &str| -> Vec<i64> {
-        let read = frames(text.as_bytes()).unwrap();
-        read.iter().map(|frame| frame.number).collect()
-    };
+    let numbers =
+        |text: &str| -> Vec<i64> { frames(text.as_bytes()).unwrap().iter().map(|frame| frame.number).collect() };
     assert_eq!(numbers("0 1 2 3\n\n\n1 1 2 3\n"), [0, 1]);
     assert_eq!(numbers("\u{feff}\n\n"), [] as [i64; 0]);
     assert_eq!(numbers(""), [] as [i64; 0]);
@@ -89,8 +85,7 @@ fn after_an_error_the_next_line_is_read() {
     let wrong = |reader: &mut FrameReader<&[u8]>| reader.next_frame().unwrap_err().to_string();
     assert!(wrong(&mut reader).contains("line 1: the line is longer than 65536 bytes"));
     assert!(wrong(&mut reader).contains("line 3"));
-    let pedestrians = reader.next_frame().unwrap().unwrap().pedestrians;
-    let pedestrians: Vec<i64> = pedestrians.iter().map(|(id, _)| id.0).collect();
+    let pedestrians: Vec<i64> = reader.next_frame().unwrap().unwrap().pedestrians.iter().map(|(id, _)| id.0).collect();
     assert_eq!(pedestrians, [1, 3]);
     assert!(wrong(&mut reader).contains("line 6"));
     assert_eq!(reader.unfinished().map(|frame| frame.number), Some(1));
@@ -152,8 +147,7 @@ proptest! {
             let alone = frames((head.to_owned() + &lines.collect::<String>()).as_bytes()).unwrap();
             let seen = |frames: &[Frame]| -> Vec<_> {
                 let people = |frame: &Frame| -> Vec<_> {
-                    let people = frame.pedestrians.iter();
-                    people.map(|&(id, place)| (frame.names.of(id), place)).collect()
+                    frame.pedestrians.iter().map(|&(id, place)| (frame.names.of(id), place)).collect()
                 };
                 frames.iter().map(|frame| (frame.number, frame.is_first, people(frame))).collect()
             };
@@ -190,8 +184,7 @@ fn scenes_that_fall_silent_make_room() {
     assert!(early.contains("frame 0 of scene 7 comes after frame 5"), "{early}");
     assert_eq!(std::iter::from_fn(|| reader.unfinished()).count(), 1_000);
     // With an idle timeout of zero, every frame is the first of its scene.
-    let reader = FrameReader::new(text.as_bytes(), "tracker");
-    let mut reader = reader.forgetting_after(Duration::ZERO);
+    let mut reader = FrameReader::new(text.as_bytes(), "tracker").forgetting_after(Duration::ZERO);
     let read: Vec<Frame> = std::iter::from_fn(|| reader.next_frame().unwrap()).collect();
     assert_eq!(read.len(), 1_002);
     assert!(read.iter().all(|frame| frame.is_first));

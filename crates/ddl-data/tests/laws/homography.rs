@@ -54,8 +54,7 @@ fn pixels_on_the_horizon_have_no_place() {
     let plain: Homography = "1 0 0\n0 1 0\n0 0 1\n".parse().unwrap();
     assert_eq!(plain.apply([1e7, -1e7]), Some([1e7, -1e7]));
     assert_eq!([[1.1e7, 0.0], [0.0, -1.1e7]].map(|pixel| plain.apply(pixel)), [None; 2]);
-    let text = b"frame,pedestrian,x,y\n0,1,5,50\n1,1,5,100\n";
-    let recording = parse_recording(text, "pixels", Format::Table).unwrap();
+    let recording = parse_recording(b"frame,pedestrian,x,y\n0,1,5,50\n1,1,5,100\n", "pixels", Format::Table).unwrap();
     let error = tilted.to_ground(&recording).unwrap_err().to_string();
     assert!(error.contains("pedestrian 1, frame 1"), "{error}");
 }

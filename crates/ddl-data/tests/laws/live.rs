@@ -28,8 +28,7 @@ fn errors_change_nothing() {
     let recording = Recording::in_usual_step("far", vec![Observation::new(0, pedestrian, position)]);
     assert!(matches!(recording, Err(RecordingError::Row(LiveError::NoPosition { .. }))));
     for step in [0, -1, (1 << 31) + 1] {
-        let error = LiveTracks::with_frame_step(step);
-        assert_eq!(error, Err(ClockError::FrameStep { found: step }));
+        assert_eq!(LiveTracks::with_frame_step(step), Err(ClockError::FrameStep { found: step }));
     }
 }
 

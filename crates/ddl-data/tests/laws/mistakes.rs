@@ -8,8 +8,7 @@ const CASES: &str = include_str!("mistakes.txt");
 
 fn of_file(name: &str, text: &str, format: Option<Format>) -> Option<DataError> {
     let (name, choice) = chosen(name);
-    let guessed = || Format::guess(name.as_ref(), text.as_bytes(), &choice);
-    match format.map_or_else(guessed, Ok) {
+    match format.map_or_else(|| Format::guess(name.as_ref(), text.as_bytes(), &choice), Ok) {
         Ok(format) => parse_columns(text.as_bytes(), "f", format, &choice).err(),
         Err(error) => Some(error.into()),
     }

@@ -16,7 +16,7 @@ use crate::recordings;
 
 /// How the rows of a film are timed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Pace {
+enum RowTimes {
     /// Frames at a rate.
     Rate(f64),
     /// Milliseconds: each pedestrian every 400 or 410 ms from its own first row on.
@@ -25,23 +25,23 @@ enum Pace {
     Jitter,
 }
 
-const PACES: [Pace; 11] = [
-    Pace::Rate(1.0),
-    Pace::Rate(2.0),
-    Pace::Rate(7.0),
-    Pace::Rate(9.0),
-    Pace::Rate(12.5),
-    Pace::Rate(23.976),
-    Pace::Rate(25.0),
-    Pace::Rate(29.97),
-    Pace::Rate(30.0),
-    Pace::OwnClocks,
-    Pace::Jitter,
+const PACES: [RowTimes; 11] = [
+    RowTimes::Rate(1.0),
+    RowTimes::Rate(2.0),
+    RowTimes::Rate(7.0),
+    RowTimes::Rate(9.0),
+    RowTimes::Rate(12.5),
+    RowTimes::Rate(23.976),
+    RowTimes::Rate(25.0),
+    RowTimes::Rate(29.97),
+    RowTimes::Rate(30.0),
+    RowTimes::OwnClocks,
+    RowTimes::Jitter,
 ];
 
-impl Pace {
+impl RowTimes {
     fn clock(self) -> Clock {
-        let seconds = if let Pace::Rate(rate) = self { 1.0 / rate } else { 0.001 };
+        let seconds = if let RowTimes::Rate(rate) = self { 1.0 / rate } else { 0.001 };
         Clock::with_frame_time(seconds).unwrap()
     }
 
@@ -64,10 +64,10 @@ impl Pace {
 }
 
 /// Pedestrians for 14 s that turn and pause, with noise and lost rows, in some order.
-fn film(pace: Pace, seed: u64, noise: f64, lost: f64) -> Vec<Observation> {
+fn film(pace: RowTimes, seed: u64, noise: f64, lost: f64) -> Vec<Observation> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let lost = if pace == Pace::Rate(1.0) { 0.0 } else { lost }; // rows are at most 1.2 s apart
-    let second = if let Pace::Rate(rate) = pace { rate } else { 1000.0 };
+    let lost = if pace == RowTimes::Rate(1.0) { 0.0 } else { lost }; // rows are at most 1.2 s apart
+    let second = if let RowTimes::Rate(rate) = pace { rate } else { 1000.0 };
     let mut rows = Vec::new();
     for id in 1..=3 {
         let mut amount = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
@@ -87,7 +87,7 @@ fn film(pace: Pace, seed: u64, noise: f64, lost: f64) -> Vec<Observation> {
     rows
 }
 
-fn films() -> impl Strategy<Value = (Pace, Vec<Observation>)> {
+fn films() -> impl Strategy<Value = (RowTimes, Vec<Observation>)> {
     let noise = prop::sample::select(vec![0.0, 0.0, 0.05, 0.2]);
     let lost = prop::sample::select(vec![0.0, 0.3]);
     let film = |(pace, seed, noise, lost)| (pace, film(pace, seed, noise, lost));
@@ -168,7 +168,7 @@ proptest! {
         every in prop_oneof![Just(0.0), Just(TIME_STEP)],
     ) {
         rows.sort_by_key(|row| (row.frame, if turned { -row.pedestrian.0 } else { row.pedestrian.0 }));
-        let times = if matches!(pace, Pace::Rate(_)) { "frame" } else { "time_ms" };
+        let times = if matches!(pace, RowTimes::Rate(_)) { "frame" } else { "time_ms" };
         let mut text = format!("x,y,pedestrian,{times}\n");
         for Observation { frame, pedestrian, position: [x, y] } in rows {
             writeln!(text, "{x},{y},{pedestrian},{frame}").unwrap();
@@ -214,8 +214,7 @@ proptest! {
         let together = partial(&recording(pace.clock(), rows.clone())).windows;
         let mine: Vec<_> = rows.into_iter().filter(|row| row.pedestrian.0 == 1).collect();
         for window in partial(&recording(pace.clock(), mine)).windows {
-            let moment = |other: &&Window| other.frames() == window.frames();
-            let Some(other) = together.iter().find(moment) else {
+            let Some(other) = together.iter().find(|other: &&Window| other.frames() == window.frames()) else {
                 continue; // the common windows may be due at other moments
             };
             let i = other.pedestrians().iter().position(|id| id.0 == 1).unwrap();
@@ -228,7 +227,7 @@ proptest! {
     /// Rows at the steps, with or without others between them, pass to the bit, and nothing was estimated.
     #[test]
     fn rows_at_the_steps_pass_unchanged(frames in prop::sample::select(vec![1, 2, 4, 5, 10]), seed in any::<u64>()) {
-        let pace = Pace::Rate(2.5 * f64::from(frames));
+        let pace = RowTimes::Rate(2.5 * f64::from(frames));
         let recording = recording(pace.clock(), film(pace, seed, 0.0, 0.0));
         let windows = recording.observed_windows();
         prop_assert!(windows.len() > 5);
@@ -265,7 +264,7 @@ proptest! {
         };
         for window in partial(&recording).windows {
             let last = window.frames()[OBSERVED - 1];
-            for (future, &id) in recording.futures().of(&window).iter().zip(window.pedestrians()) {
+            for (future, &id) in recording.futures().after(&window).iter().zip(window.pedestrians()) {
                 let expected: Vec<Position> = (1..=12).map_while(|k| position(id, last + k * step)).collect();
                 prop_assert_eq!(future, &expected);
             }
@@ -311,10 +310,9 @@ fn every_clock_is_observed() {
         9.6,
     );
     // A common clock that jitters: each at every moment from its second row on.
-    let jitter = |_| (0..100).map(|k| 1_000 + Pace::Jitter.frame(0, k)).collect();
+    let jitter = |_| (0..100).map(|k| 1_000 + RowTimes::Jitter.frame(0, k)).collect();
     let recording = recording(Clock::with_frame_time(0.001).unwrap(), straight(jitter, 4));
-    let observed = partial(&recording);
-    assert_eq!(observed.windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
+    assert_eq!(partial(&recording).windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
     let slow = recording.observe(recording.live_tracks().with_interval(0.4)).windows;
     assert!((16..=18).contains(&slow.len()), "{} windows every 0.4 s of the last 7.1 s", slow.len());
 }

@@ -40,8 +40,7 @@ fn of_window(window: &Window) -> Vec<[f64; 7]> {
 fn films_are_observed_as_by_another_program() {
     let films: Vec<Film> = serde_json::from_str(include_str!("reference/observed_tracks.json")).unwrap();
     for (number, film) in (1..).zip(films) {
-        let rows = film.rows.iter();
-        let rows = rows.map(|&(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
+        let rows = film.rows.iter().map(|&(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
         let clock = Clock::with_frame_time(film.frame_time).unwrap();
         assert_eq!((clock.tick(1).unwrap(), clock.frame_step()), (film.ticks, film.step));
         let recording = recording(clock, rows.collect());

@@ -39,8 +39,7 @@ fn missing_detections_are_reported() {
         panic!("{:?}", summary.warnings());
     };
     assert_eq!(share.to_bits(), summary.unseen.to_bits());
-    let whole = Recording::new("yard", 1, walk(0.5)).unwrap().summary();
-    assert_eq!(whole.unseen.to_bits(), 0.0_f64.to_bits());
+    assert_eq!(Recording::new("yard", 1, walk(0.5)).unwrap().summary().unseen.to_bits(), 0.0_f64.to_bits());
 }
 
 #[test]
@@ -68,8 +67,7 @@ fn holes_and_training_samples_are_counted() {
     assert!((gap.seconds - 0.8).abs() < 1e-12);
     // 20 steps from each of the frames 0 to 80, but no moment at frame 50.
     assert_eq!(summary.to_learn_from, 80);
-    let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();
-    let summary = few.summary();
+    let summary = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap().summary();
     assert_eq!((summary.to_forecast, summary.seen_whole), (11, 5));
     assert_eq!(summary.warnings(), [PlausibilityWarning::NothingToLearnFrom]);
     // Two and four rows of a hundred.
@@ -105,8 +103,7 @@ fn on_way(metres: f64) -> Position {
 /// Tracks of so many rows, one every 0.2 s.
 fn tracks(rows: i64, places: &[&dyn Fn(f64) -> Position]) -> Recording {
     let of_track = |(id, place): (i64, &&dyn Fn(f64) -> Position)| -> Vec<Observation> {
-        let row = |t: i64| Observation::new(t, PedestrianId(id), place(t as f64));
-        (0..rows).map(row).collect()
+        (0..rows).map(|t: i64| Observation::new(t, PedestrianId(id), place(t as f64))).collect()
     };
     Recording::new("yard", 2, (1..).zip(places).flat_map(of_track).collect()).unwrap()
 }

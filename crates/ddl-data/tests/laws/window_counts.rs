@@ -21,9 +21,7 @@ fn expected<const N: usize>(counts: &Value, names: [&str; N]) -> [i64; N] {
 
 #[test]
 fn each_star_recording_has_the_windows_of_the_reference() {
-    let Some(dataset) = recordings::load(Convention::Star) else {
-        return;
-    };
+    let Some(dataset) = recordings::load(Convention::Star) else { return };
     let counts = reference("recordings");
     assert_eq!(counts.len(), dataset.recordings().len());
     for (name, counts) in &counts {
@@ -35,17 +33,14 @@ fn each_star_recording_has_the_windows_of_the_reference() {
             (WindowRule::Published, ["published_windows", "published_pedestrian_windows"]),
             (WindowRule::Complete, ["complete_windows", "complete_pedestrian_windows"]),
         ] {
-            let actual = count(&recording.windows(rule));
-            assert_eq!(actual, expected(counts, names), "{name}, {rule}");
+            assert_eq!(count(&recording.windows(rule)), expected(counts, names), "{name}, {rule}");
         }
     }
 }
 
 #[test]
 fn each_star_fold_has_the_windows_of_the_reference() {
-    let Some(dataset) = recordings::load(Convention::Star) else {
-        return;
-    };
+    let Some(dataset) = recordings::load(Convention::Star) else { return };
     let counts = reference("folds");
     assert_eq!(counts.len(), dataset.fold_names().len());
     for (name, counts) in &counts {
@@ -61,13 +56,11 @@ fn each_star_fold_has_the_windows_of_the_reference() {
         let pairs = |w: &Window| -> usize {
             let places = w.positions_at(OBSERVED - 1);
             let index = SpatialIndex::new(&places);
-            let near = places.iter().map(|&place| index.within_box(place, 10.0).count() - 1);
-            near.sum()
+            places.iter().map(|&place| index.within_box(place, 10.0).count() - 1).sum()
         };
         let pairs: usize = published.iter().map(pairs).sum();
         let names = ["neighbour_pairs_at_last_observed_frame"];
-        let of_pairs = expected(&counts["published_test"], names);
-        assert_eq!([pairs as i64], of_pairs, "{name}");
+        assert_eq!([pairs as i64], expected(&counts["published_test"], names), "{name}");
         let training = |rule| fold.training_windows(rule);
         for (part, windows) in [
             ("published_test", published),
@@ -83,9 +76,7 @@ fn each_star_fold_has_the_windows_of_the_reference() {
 
 #[test]
 fn each_social_gan_fold_has_the_windows_of_the_reference() {
-    let Some(dataset) = recordings::load(Convention::SocialGan) else {
-        return;
-    };
+    let Some(dataset) = recordings::load(Convention::SocialGan) else { return };
     let counts = reference("social_gan_test_windows_and_pedestrians");
     for (part, min_pedestrians) in [("min_1_pedestrian", 1), ("min_2_pedestrians", 2)] {
         let rule = WindowRule::SocialGan { min_pedestrians };
@@ -100,11 +91,8 @@ fn each_social_gan_fold_has_the_windows_of_the_reference() {
 #[test]
 fn coordinates_are_read_the_right_way_round() {
     for (convention, position) in [(Convention::Star, [3.5881, 8.4568]), (Convention::SocialGan, [8.46, 3.59])] {
-        let Some(dataset) = recordings::load(convention) else {
-            return;
-        };
+        let Some(dataset) = recordings::load(convention) else { return };
         let eth = dataset.recording("eth").unwrap().observations()[0];
-        let actual = (eth.frame, eth.pedestrian.0, eth.position);
-        assert_eq!(actual, (780, 1, position), "{convention}");
+        assert_eq!((eth.frame, eth.pedestrian.0, eth.position), (780, 1, position), "{convention}");
     }
 }

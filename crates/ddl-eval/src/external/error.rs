@@ -1,8 +1,7 @@
 //! Errors in files of forecasts, with their place and remedy.
 
-use std::path::PathBuf;
-
 use ddl_core::{ForecastError, ForecastShapeError};
+use ddl_data::{DataError, FormatError};
 
 use crate::error::EvaluationError;
 
@@ -11,12 +10,10 @@ use crate::error::EvaluationError;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum ExternalError {
-    #[error("cannot read {}: {source}", path.display())]
-    File { path: PathBuf, source: std::io::Error },
+    #[error(transparent)]
+    Data(#[from] DataError),
     #[error("{origin}: {source}")]
     Io { origin: String, source: std::io::Error },
-    #[error("{origin}, line {line}{}: {problem}", field.as_deref().map(|f| format!(", {f}")).unwrap_or_default())]
-    Line { origin: String, line: usize, field: Option<String>, problem: String },
     #[error(
         "{origin} forecasts {} of the {pedestrians} pedestrians in the windows; {missing} are missing, the first of \
          them \
@@ -47,4 +44,10 @@ pub enum ExternalError {
     Forecast(#[from] ForecastError),
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
+}
+
+impl From<FormatError> for ExternalError {
+    fn from(error: FormatError) -> Self {
+        Self::Data(error.into())
+    }
 }

@@ -3,10 +3,10 @@
 use std::collections::HashMap;
 
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
+use ddl_data::{Fault, Problem};
 
 use crate::external::error::ExternalError;
 use crate::external::hint::Unknown;
-use crate::external::lines::{Wrong, in_field, whole_line};
 use crate::external::pedestrian_key::{PedestrianKey, frames_ahead, last_observed, wrong_frames};
 
 #[derive(Debug, Default)]
@@ -26,16 +26,14 @@ impl PedestrianForecast {
         self.positions.len() / HORIZON
     }
 
-    fn check_weights(&self) -> Result<(), String> {
-        let Some(weights) = &self.weights else {
-            return Ok(());
-        };
+    fn check_weights(&self) -> Result<(), Problem> {
+        let Some(weights) = &self.weights else { return Ok(()) };
         if let Some(&found) = weights.iter().find(|&&weight| weight < 0.0) {
-            return Err(format!("a weight must not be below 0, found {found}"));
+            return Err(format!("a weight must not be below 0, found {found}").into());
         }
         let sum: f64 = weights.iter().sum();
         if (sum - 1.0).abs() > Forecast::WEIGHT_TOLERANCE {
-            return Err(format!("the weights sum to {sum}, not to 1; divide them by their sum"));
+            return Err(format!("the weights sum to {sum}, not to 1; divide them by their sum").into());
         }
         Ok(())
     }
@@ -89,20 +87,20 @@ impl<'a> ExpectedForecasts<'a> {
     }
 
     /// The index of the named recording. Without a name, the index of the only recording. `None` for an unknown name.
-    pub(super) fn recording(&self, name: Option<&str>) -> Result<Option<usize>, Wrong> {
+    pub(super) fn recording(&self, name: Option<&str>) -> Result<Option<usize>, Fault> {
         match name {
             Some(name) => Ok(self.index_of(name)),
             None if self.recordings.len() > 1 => {
                 let names = self.recordings.join(", ");
                 let problem = format!("is missing, but the windows have several recordings: {names}");
-                Err(in_field("recording", problem))
+                Err(Fault::named("recording", problem))
             }
             None => Ok(self.recordings.first().map(|_| 0)),
         }
     }
 
     /// Adds the forecast of a pedestrian from a line.
-    pub(super) fn put(&mut self, who: &PedestrianKey, forecast: PedestrianForecast, line: usize) -> Result<(), Wrong> {
+    pub(super) fn put(&mut self, who: &PedestrianKey, forecast: PedestrianForecast, line: usize) -> Result<(), Fault> {
         self.forecasts += 1;
         self.check(&forecast, line)?;
         let recording = self.recording(who.recording.as_deref())?;
@@ -118,21 +116,20 @@ impl<'a> ExpectedForecasts<'a> {
         check_frames(&self.windows[window], forecast.frames.as_deref())?;
         let slot = &mut self.slots[window][pedestrian];
         if let Some(Slot { line: first_line, .. }) = slot {
-            let problem = format!("line {first_line} already forecasts this pedestrian; keep one");
-            return Err(whole_line(problem));
+            return Err(Fault::from(format!("line {first_line} already forecasts this pedestrian; keep one")));
         }
         *slot = Some(Slot { forecast, line });
         Ok(())
     }
 
-    fn check(&mut self, forecast: &PedestrianForecast, line: usize) -> Result<(), Wrong> {
+    fn check(&mut self, forecast: &PedestrianForecast, line: usize) -> Result<(), Fault> {
         let found = forecast.hypotheses();
         if found == 0 {
-            return Err(whole_line("at least one hypothesis is needed"));
+            return Err(Fault::from("at least one hypothesis is needed"));
         }
         let (expected, first_line) = *self.hypotheses.get_or_insert((found, line));
         if found != expected {
-            return Err(whole_line(format!(
+            return Err(Fault::from(format!(
                 "{found} hypotheses, but {expected} on line {first_line}; the best of K needs the same K for all \
                  pedestrians"
             )));
@@ -140,11 +137,11 @@ impl<'a> ExpectedForecasts<'a> {
         let has_goals = forecast.goals.is_some();
         let (expected, first_line) = *self.goals.get_or_insert((has_goals, line));
         if has_goals != expected {
-            return Err(whole_line(format!(
+            return Err(Fault::from(format!(
                 "all hypotheses of the file must have goals, or none (as on line {first_line})"
             )));
         }
-        forecast.check_weights().map_err(|problem| in_field("weight", problem))
+        forecast.check_weights().map_err(|problem| Fault::named("weight", problem))
     }
 
     fn remember_unknown(&mut self, who: &PedestrianKey, recording: Option<usize>) {
@@ -160,11 +157,11 @@ impl<'a> ExpectedForecasts<'a> {
     }
 }
 
-fn check_frames(window: &Window, frames: Option<&[i64]>) -> Result<(), Wrong> {
+fn check_frames(window: &Window, frames: Option<&[i64]>) -> Result<(), Fault> {
     let Some(found) = frames else { return Ok(()) };
     let ahead = frames_ahead(window);
     if ahead.iter().any(|frames| frames == found) {
         return Ok(());
     }
-    Err(in_field("frames", wrong_frames(found, &ahead[0])))
+    Err(Fault::named("frames", wrong_frames(found, &ahead[0])))
 }

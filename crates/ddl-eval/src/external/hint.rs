@@ -27,8 +27,7 @@ impl Unknown {
         self.count += 1;
         let name = who.recording.as_deref().or(recording);
         if self.first.len() < NAMED {
-            let text = named(name, who.observed_until, &who.pedestrian);
-            self.first.push(text);
+            self.first.push(named(name, who.observed_until, &who.pedestrian));
         }
         if let (None, Some(name)) = (recording, name)
             && self.recordings.len() < NAMED

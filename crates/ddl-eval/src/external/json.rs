@@ -3,11 +3,12 @@
 use std::borrow::Cow;
 
 use ddl_core::PedestrianName;
+use ddl_data::{Fault, quoted};
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 use serde_json::{Number, Value};
 use serde_path_to_error::{Path, Segment};
 
-use crate::external::lines::{self, Wrong, in_field, missing, not_finite, quoted, whole_line};
+use crate::external::lines::{self, missing, not_finite};
 
 /// Words for numbers that are not valid JSON, but that several programs write.
 const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
@@ -21,7 +22,7 @@ impl TryFrom<Number> for Whole {
     type Error = &'static str;
 
     fn try_from(number: Number) -> Result<Self, Self::Error> {
-        let whole = number.as_i64().or_else(|| lines::whole(number.as_f64()?));
+        let whole = number.as_i64().or_else(|| lines::whole_number(number.as_f64()?));
         whole.map(Self).ok_or("no whole number")
     }
 }
@@ -33,7 +34,7 @@ enum Name {
     Word(String),
 }
 
-pub(super) fn whole<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error> {
+pub(super) fn whole_number<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error> {
     Whole::deserialize(field).map(|Whole(number)| number)
 }
 
@@ -46,13 +47,13 @@ pub(super) fn pedestrian<'de, D: Deserializer<'de>>(field: D) -> Result<Pedestri
 }
 
 /// The object of a line; fields of other names are ignored.
-pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
+pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
     // The fast parser does not report names of fields, so a line with an error is read again.
     serde_json::from_str(text).or_else(|_| read_with_path(&without_no_numbers(text)))
 }
 
-fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
-    let json = |detail: String| whole_line(format!("not a JSON object: {detail}"));
+fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Fault> {
+    let json = |detail: String| Fault::from(format!("not a JSON object: {detail}"));
     let value: Value = serde_json::from_str(text).map_err(|error| json(error.to_string()))?;
     if !value.is_object() {
         return Err(json(format!("found {}", quoted(&value.to_string()))));
@@ -66,9 +67,9 @@ fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
         };
         match message.split('`').collect::<Vec<_>>()[..] {
             ["missing field ", name, ..] => missing(field(name)),
-            ["duplicate field ", name, ..] => in_field(field(name), "appears twice; keep one"),
+            ["duplicate field ", name, ..] => Fault::named(field(name), "appears twice; keep one"),
             _ => match problem(&value, error.path()) {
-                Some(problem) => in_field(error.path().to_string(), problem),
+                Some(problem) => Fault::named(error.path().to_string(), problem),
                 None => json(message),
             },
         }

@@ -3,13 +3,14 @@
 use std::io::BufRead;
 
 use ddl_core::{HORIZON, PedestrianName, Position};
+use ddl_data::{Fault, TextLines};
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
 
 use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
 use crate::external::json::{self, Whole};
-use crate::external::lines::{Lines, Wrong, in_field, missing, whole_line, within_bounds, wrong_length};
+use crate::external::lines::{missing, within_bounds, wrong_length};
 use crate::external::pedestrian_key::PedestrianKey;
 use crate::protocol::Protocol;
 
@@ -17,7 +18,7 @@ use crate::protocol::Protocol;
 #[derive(Debug, Deserialize)]
 struct JsonForecast {
     recording: Option<String>,
-    #[serde(deserialize_with = "json::whole")]
+    #[serde(deserialize_with = "json::whole_number")]
     observed_until: i64,
     #[serde(deserialize_with = "json::pedestrian")]
     pedestrian: PedestrianName,
@@ -39,30 +40,32 @@ fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::
     f64::deserialize(deserializer).map(Some)
 }
 
-pub(super) fn read(mut lines: Lines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
-    while let Some((number, text)) = lines.next_line()? {
-        let taken = read_line(text).and_then(|line| {
+pub(super) fn read(
+    mut lines: TextLines<impl BufRead>,
+    expected: &mut ExpectedForecasts<'_>,
+) -> Result<(), ExternalError> {
+    while let Some(text) = lines.next_filled()? {
+        let line = read_line(text);
+        let taken = line.and_then(|line| {
             let (who, forecast) = line.taken_apart()?;
-            expected.put(&who, forecast, number)
+            expected.put(&who, forecast, lines.number())
         });
-        if let Err(wrong) = taken {
-            return Err(lines.wrong(number, wrong));
-        }
+        taken.map_err(|fault| lines.wrong(fault))?;
     }
     Ok(())
 }
 
-fn read_line(text: &str) -> Result<JsonForecast, Wrong> {
+fn read_line(text: &str) -> Result<JsonForecast, Fault> {
     json::read(text).map_err(|wrong| {
         let is_of_trajnet = |line: Map<String, Value>| line.keys().eq(["scene"]) || line.keys().eq(["track"]);
         let remedy = "a scene or track of TrajNet++; convert the file to JSON lines as docs/your-model.md shows";
         let known = serde_json::from_str(text).is_ok_and(is_of_trajnet);
-        if known { whole_line(remedy) } else { wrong }
+        if known { Fault::from(remedy) } else { wrong }
     })
 }
 
 impl JsonForecast {
-    fn taken_apart(self) -> Result<(PedestrianKey, PedestrianForecast), Wrong> {
+    fn taken_apart(self) -> Result<(PedestrianKey, PedestrianForecast), Fault> {
         let count = self.hypotheses.len();
         let who = PedestrianKey {
             recording: self.recording,
@@ -70,11 +73,11 @@ impl JsonForecast {
             pedestrian: self.pedestrian,
         };
         if count > Protocol::MAX_HYPOTHESES {
-            return Err(in_field("hypotheses", who.too_many_hypotheses()));
+            return Err(Fault::named("hypotheses", who.too_many_hypotheses()));
         }
         let weighted = self.hypotheses.iter().filter(|h| h.weight.is_some()).count();
         if weighted != 0 && weighted != count {
-            return Err(in_field("hypotheses", "all hypotheses of a pedestrian must have weights, or none"));
+            return Err(Fault::named("hypotheses", "all hypotheses of a pedestrian must have weights, or none"));
         }
         let with_goal = self.hypotheses.iter().filter(|h| h.goal.is_some()).count();
         let mut forecast = PedestrianForecast {
@@ -86,7 +89,7 @@ impl JsonForecast {
         for (k, hypothesis) in self.hypotheses.into_iter().enumerate() {
             let found = hypothesis.positions.len();
             if found != HORIZON {
-                return Err(in_field(format!("hypotheses[{k}].positions"), wrong_length(found)));
+                return Err(Fault::named(format!("hypotheses[{k}].positions"), wrong_length(found)));
             }
             for (t, &position) in hypothesis.positions.iter().enumerate() {
                 within_bounds(position, || format!("hypotheses[{k}].positions[{t}]"))?;

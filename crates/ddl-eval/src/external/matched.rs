@@ -1,12 +1,12 @@
 //! Forecasts in the order of the windows.
 
 use ddl_core::{Forecast, HORIZON, Position, Window};
+use ddl_data::Fault;
 use sha2::{Digest as _, Sha256};
 
 use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, Slot};
 use crate::external::hint::NAMED;
-use crate::external::lines::{whole_line, wrong};
 use crate::external::pedestrian_key::{last_observed, named};
 
 /// What to do if a file and the windows have different pedestrians.
@@ -77,7 +77,7 @@ impl ExpectedForecasts<'_> {
         let forecast_count = self.slots.iter().flatten().flatten().count();
         if self.forecasts == 0 {
             let problem = "the file holds no forecast; is it empty or truncated?";
-            return Err(wrong(&self.origin, 1, whole_line(problem)));
+            return Err(Fault::from(problem).in_line(&self.origin, 1).into());
         }
         let refused = match coverage {
             Coverage::Whole => self.unknown.count > 0,
@@ -111,9 +111,7 @@ impl ExpectedForecasts<'_> {
             pedestrians,
         };
         for (window, slots) in self.windows.iter().zip(self.slots) {
-            let Some(reduced) = window.filter_pedestrians(|i| slots[i].is_some()) else {
-                continue;
-            };
+            let Some(reduced) = window.filter_pedestrians(|i| slots[i].is_some()) else { continue };
             let slots: Vec<Slot> = slots.into_iter().flatten().collect();
             matched.windows.push(reduced);
             matched.full_windows.push(window.clone());
@@ -125,17 +123,16 @@ impl ExpectedForecasts<'_> {
     }
 
     fn first_missing(&self) -> Vec<String> {
-        let rows = self.windows.iter().zip(&self.slots);
-        rows.flat_map(|(window, slots)| {
-            let missing = (0..window.len()).filter(|&i| slots[i].is_none());
-            missing.map(move |i| (window, i))
-        })
-        .take(NAMED)
-        .map(|(window, i)| {
-            let name = window.name(i);
-            named(Some(window.recording()), last_observed(window), &name)
-        })
-        .collect()
+        self.windows
+            .iter()
+            .zip(&self.slots)
+            .flat_map(|(window, slots)| (0..window.len()).filter(|&i| slots[i].is_none()).map(move |i| (window, i)))
+            .take(NAMED)
+            .map(|(window, i)| {
+                let name = window.name(i);
+                named(Some(window.recording()), last_observed(window), &name)
+            })
+            .collect()
     }
 }
 

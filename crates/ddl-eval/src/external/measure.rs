@@ -46,8 +46,7 @@ impl Matched {
             .zip(&self.forecasts)
             .flat_map(|(window, forecast)| {
                 (0..window.len()).map(move |i| {
-                    let first = forecast.hypothesis(i, forecast.most_likely(i))[0];
-                    (window.observed(i)[OBSERVED - 1], first)
+                    (window.observed(i)[OBSERVED - 1], forecast.hypothesis(i, forecast.most_likely(i))[0])
                 })
             })
             .collect();

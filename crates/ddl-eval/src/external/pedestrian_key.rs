@@ -2,6 +2,7 @@
 //! the scene.
 
 use ddl_core::{HORIZON, OBSERVED, PedestrianName, Window};
+use ddl_data::Problem;
 
 use crate::protocol::Protocol;
 
@@ -14,8 +15,7 @@ pub(super) struct PedestrianKey {
 
 impl PedestrianKey {
     pub(super) fn named(&self) -> String {
-        let recording = self.recording.as_deref();
-        named(recording, self.observed_until, &self.pedestrian)
+        named(self.recording.as_deref(), self.observed_until, &self.pedestrian)
     }
 
     pub(super) fn too_many_hypotheses(&self) -> String {
@@ -70,7 +70,7 @@ pub(super) struct HypothesisNumbering {
 
 impl HypothesisNumbering {
     /// Checks that sorted numbers are 0 ... K - 1 or 1 ... K, alike for all pedestrians of the file.
-    pub(super) fn check(&mut self, sorted: &[i64], pedestrian: &str) -> Result<(), String> {
+    pub(super) fn check(&mut self, sorted: &[i64], pedestrian: &str) -> Result<(), Problem> {
         let counts_from = |first: i64| sorted.iter().copied().eq((first..).take(sorted.len()));
         let first = match self.first {
             Some(first) => Some(first).filter(|&first| counts_from(first)),
@@ -90,7 +90,8 @@ impl HypothesisNumbering {
             "the hypotheses of {pedestrian} have the numbers {}, expected {expected}; a number stands for one joint \
              future, so number them alike for all pedestrians",
             numbers.join(", ")
-        ))
+        )
+        .into())
     }
 }
 

@@ -19,15 +19,15 @@ use std::io::{BufReader, Error, ErrorKind};
 use std::path::{Component, Path, PathBuf};
 
 use ddl_core::{Forecast, HORIZON, OBSERVED, PedestrianName, Position, Window, write_atomically};
-use ddl_data::Convention;
+use ddl_data::{Convention, Fault};
 
 use crate::error::EvaluationError;
 use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
-use crate::external::lines::{Lines, Wrong, in_field, whole_line, within_bounds, wrong, wrong_length};
+use crate::external::lines::{lines_of, within_bounds, wrong_length};
 use crate::external::matched::{Coverage, Matched};
 use crate::external::pedestrian_key::{PedestrianKey, frames_ahead, last_observed, wrong_frames};
-use crate::external::table::{finite, whole};
+use crate::external::table::{finite, whole_number};
 use crate::protocol::Protocol;
 
 /// Writes the observations, true futures and forecasts of windows as sample files into a new folder METHOD.
@@ -89,9 +89,7 @@ pub fn read_samples(folder: &Path, windows: &[Window], coverage: Coverage) -> Re
     let mut first: Option<(usize, PathBuf)> = None;
     for recording in expected.recordings.clone() {
         let names = [recording, scene_name(recording)].map(|name| folder.join(name));
-        let Some(scene) = names.iter().find(|scene| scene.is_dir()) else {
-            continue;
-        };
+        let Some(scene) = names.iter().find(|scene| scene.is_dir()) else { continue };
         for (frame, moment) in numbered::<i64>(scene, "frame_", "")? {
             let samples = samples_of(&moment)?;
             let (count, of_first) = first.get_or_insert_with(|| (samples.len(), moment.clone()));
@@ -115,7 +113,7 @@ pub fn read_samples(folder: &Path, windows: &[Window], coverage: Coverage) -> Re
 }
 
 /// A future of a window: the pedestrians, each with its first line, its frames and positions.
-type Sample = BTreeMap<PedestrianName, (usize, Vec<i64>, Vec<Position>)>;
+type SampleFile = BTreeMap<PedestrianName, (usize, Vec<i64>, Vec<Position>)>;
 
 fn read_window(
     expected: &mut ExpectedForecasts<'_>,
@@ -130,60 +128,57 @@ fn read_window(
         let lacks = all.keys().find(|name| !sample.contains_key(name));
         if let Some(name) = lacks {
             let problem = format!("pedestrian {name} is missing, which sample_000.txt has");
-            return Err(wrong(&origin, 1, whole_line(problem)));
+            return Err(Fault::from(problem).in_line(&origin, 1).into());
         }
         for (name, (line, frames, positions)) in sample {
             let problem = if positions.len() != HORIZON {
-                Some(whole_line(wrong_length(positions.len())))
+                Some(Fault::from(wrong_length(positions.len())))
             } else if k > 0 && !all.contains_key(&name) {
-                Some(in_field("pedestrian", format!("{name} is not in sample_000.txt")))
+                Some(Fault::named("pedestrian", format!("{name} is not in sample_000.txt")))
             } else {
                 let (_, forecast) = all.entry(name).or_insert_with(|| (line, PedestrianForecast::default()));
                 forecast.positions.extend(positions);
                 let known = forecast.frames.get_or_insert_with(|| frames.clone());
-                (*known != frames).then(|| in_field("frame", wrong_frames(&frames, known)))
+                (*known != frames).then(|| Fault::named("frame", wrong_frames(&frames, known)))
             };
             if let Some(problem) = problem {
-                return Err(wrong(&origin, line, problem));
+                return Err(problem.in_line(&origin, line).into());
             }
         }
     }
     for (pedestrian, (line, forecast)) in all {
         let who = PedestrianKey { recording: Some(recording.to_owned()), observed_until, pedestrian };
-        let put = expected.put(&who, forecast, line);
-        put.map_err(|problem| wrong(&samples[0].display().to_string(), line, problem))?;
+        expected.put(&who, forecast, line).map_err(|fault| fault.in_line(&samples[0].display().to_string(), line))?;
     }
     Ok(())
 }
 
-fn read_sample(file: &Path, origin: &str) -> Result<Sample, ExternalError> {
+fn read_sample(file: &Path, origin: &str) -> Result<SampleFile, ExternalError> {
     let reader = BufReader::new(File::open(file).map_err(|source| of_file(file, source))?);
-    let (mut lines, mut sample) = (Lines::new(reader, origin), Sample::new());
+    let (mut lines, mut sample) = (lines_of(reader, origin), SampleFile::new());
     let mut last = None;
-    while let Some((number, text)) = lines.next_line()? {
-        let (name, frame, position) = row(text).map_err(|problem| wrong(origin, number, problem))?;
+    while let Some(text) = lines.next_filled()? {
+        let (name, frame, position) = row(text).map_err(|fault| lines.wrong(fault))?;
         if last.as_ref() != Some(&name) && sample.contains_key(&name) {
-            let problem = format!("the rows of pedestrian {name} must stand together");
-            return Err(wrong(origin, number, whole_line(problem)));
+            return Err(lines.wrong(format!("the rows of pedestrian {name} must stand together")).into());
         }
         last = Some(name.clone());
-        let (_, frames, positions) = sample.entry(name).or_insert_with(|| (number, Vec::new(), Vec::new()));
+        let (_, frames, positions) = sample.entry(name).or_insert_with(|| (lines.number(), Vec::new(), Vec::new()));
         frames.push(frame);
         positions.push(position);
     }
     Ok(sample)
 }
 
-fn row(text: &str) -> Result<(PedestrianName, i64, Position), Wrong> {
+fn row(text: &str) -> Result<(PedestrianName, i64, Position), Fault> {
     let fields: Vec<&str> = text.split_ascii_whitespace().collect();
     let &[frame, pedestrian, x, y] = fields.as_slice() else {
         let found = fields.len();
-        return Err(whole_line(format!("{found} numbers; a row is `frame pedestrian x y`, with spaces between them")));
+        return Err(Fault::from(format!("{found} numbers; a row is `frame pedestrian x y`, with spaces between them")));
     };
     let position = [finite(x, "x")?, finite(y, "y")?];
     within_bounds(position, || "x, y".to_owned())?;
-    let pedestrian = PedestrianName::Number(whole(pedestrian, "pedestrian")?);
-    Ok((pedestrian, whole(frame, "frame")?, position))
+    Ok((PedestrianName::Number(whole_number(pedestrian, "pedestrian")?), whole_number(frame, "frame")?, position))
 }
 
 /// The files `sample_000.txt` ... of a window, of which none is left out.

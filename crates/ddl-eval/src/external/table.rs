@@ -3,49 +3,46 @@
 use std::io::BufRead;
 
 use ddl_core::{HORIZON, PedestrianName, Position};
+use ddl_data::{Fault, FormatError, TextLines, quoted};
 
 use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
-use crate::external::lines::{
-    self, Lines, Wrong, in_field, not_finite, quoted, whole_line, within_bounds, wrong_length,
-};
+use crate::external::lines::{self, not_finite, within_bounds, wrong_length};
 use crate::external::pedestrian_key::{HypothesisNumbering, PedestrianKey, wrong_frames};
-use crate::external::table_rows::{AtLine, Fields, TableRows};
+use crate::external::table_rows::{Fields, TableRows};
 use crate::protocol::Protocol;
 
 const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];
 
-pub(super) fn read(lines: Lines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
+pub(super) fn read(lines: TextLines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
     let mut rows = TableRows::new(lines);
-    let Some(header) = rows.next()? else {
-        return Ok(());
-    };
-    let columns = TableColumns::of(&header).map_err(|wrong| rows.wrong(wrong))?;
+    let Some(header) = rows.next()? else { return Ok(()) };
+    let columns = TableColumns::of(&header).map_err(|fault| rows.wrong(fault))?;
     let mut numbering = HypothesisNumbering::default();
     let mut group: Option<PedestrianRows> = None;
     while let Some(fields) = rows.next()? {
-        let row = columns.row(&fields).map_err(|wrong| rows.wrong(wrong))?;
-        let number = rows.number;
+        let row = columns.row(&fields).map_err(|fault| rows.wrong(fault))?;
+        let number = rows.number();
         if group.as_ref().is_some_and(|group| group.who != row.who) {
-            put(group.take(), expected, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))?;
+            put(group.take(), expected, &mut numbering)?;
         }
         let group = group.get_or_insert_with(|| PedestrianRows::new(row.who.clone(), number));
-        group.add(&row, number).map_err(|wrong| rows.wrong(wrong))?;
+        group.add(&row, number).map_err(|fault| rows.wrong(fault))?;
     }
-    put(group, expected, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))
+    Ok(put(group, expected, &mut numbering)?)
 }
 
-/// Adds a pedestrian whose rows are complete; an error comes with its line.
+/// Adds a pedestrian whose rows are complete.
 fn put(
     group: Option<PedestrianRows>,
     expected: &mut ExpectedForecasts<'_>,
     numbering: &mut HypothesisNumbering,
-) -> Result<(), AtLine<Wrong>> {
+) -> Result<(), FormatError> {
     let Some(group) = group else { return Ok(()) };
     let line = group.line;
-    let (who, forecast) = group.forecast(numbering)?;
-    let put = expected.put(&who, forecast, line);
-    put.map_err(|wrong| (line, wrong))
+    let forecast = group.forecast(numbering);
+    let put = forecast.and_then(|(who, forecast)| expected.put(&who, forecast, line).map_err(|fault| (line, fault)));
+    put.map_err(|(line, fault)| fault.in_line(&expected.origin, line))
 }
 
 struct TableColumns {
@@ -65,10 +62,10 @@ struct TablePosition {
 }
 
 impl TableColumns {
-    fn of(header: &Fields<'_>) -> Result<Self, Wrong> {
+    fn of(header: &Fields<'_>) -> Result<Self, Fault> {
         let names: Vec<&str> = (0..header.len()).map(|i| header.get(i)).collect();
         let wrong = |detail: String| {
-            whole_line(format!(
+            Fault::from(format!(
                 "the header must name the columns observed_until, pedestrian, frame, x and y, and may name recording, \
                  hypothesis, weight and others, each once: {detail}"
             ))
@@ -94,20 +91,20 @@ impl TableColumns {
         })
     }
 
-    fn row(&self, fields: &Fields<'_>) -> Result<TablePosition, Wrong> {
+    fn row(&self, fields: &Fields<'_>) -> Result<TablePosition, Fault> {
         if fields.len() != self.count {
             let (expected, found) = (self.count, fields.len());
-            return Err(whole_line(format!("{found} fields where the header names {expected}")));
+            return Err(Fault::from(format!("{found} fields where the header names {expected}")));
         }
         let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| fields.get(place));
         let who = PedestrianKey {
             recording: self.recording.map(|place| fields.get(place)).filter(|name| !name.is_empty()).map(str::to_owned),
-            observed_until: whole(observed_until, REQUIRED[0])?,
+            observed_until: whole_number(observed_until, REQUIRED[0])?,
             pedestrian: name(pedestrian)?,
         };
         let hypothesis = match self.hypothesis {
             None => 0,
-            Some(place) => whole(fields.get(place), "hypothesis")?,
+            Some(place) => whole_number(fields.get(place), "hypothesis")?,
         };
         let weight = match self.weight {
             None => None,
@@ -115,7 +112,7 @@ impl TableColumns {
         };
         let position = [finite(x, REQUIRED[3])?, finite(y, REQUIRED[4])?];
         within_bounds(position, || "x, y".to_owned())?;
-        Ok(TablePosition { who, hypothesis, weight, frame: whole(frame, REQUIRED[2])?, position })
+        Ok(TablePosition { who, hypothesis, weight, frame: whole_number(frame, REQUIRED[2])?, position })
     }
 }
 
@@ -138,16 +135,15 @@ impl PedestrianRows {
         Self { who, line, hypotheses: Vec::new() }
     }
 
-    fn add(&mut self, row: &TablePosition, line: usize) -> Result<(), Wrong> {
+    fn add(&mut self, row: &TablePosition, line: usize) -> Result<(), Fault> {
         let hypothesis = row.hypothesis;
         if self.hypotheses.last().is_none_or(|last| last.hypothesis != hypothesis) {
             if self.hypotheses.iter().any(|other| other.hypothesis == hypothesis) {
                 let problem = "appeared before; the rows of a hypothesis must be consecutive";
-                return Err(in_field("hypothesis", format!("hypothesis {hypothesis} {problem}")));
+                return Err(Fault::named("hypothesis", format!("hypothesis {hypothesis} {problem}")));
             }
             if self.hypotheses.len() == Protocol::MAX_HYPOTHESES {
-                let problem = self.who.too_many_hypotheses();
-                return Err(in_field("hypothesis", problem));
+                return Err(Fault::named("hypothesis", self.who.too_many_hypotheses()));
             }
             self.hypotheses.push(HypothesisRows {
                 hypothesis,
@@ -157,17 +153,15 @@ impl PedestrianRows {
                 positions: Vec::with_capacity(HORIZON),
             });
         }
-        let Some(rows) = self.hypotheses.last_mut() else {
-            return Ok(());
-        };
+        let Some(rows) = self.hypotheses.last_mut() else { return Ok(()) };
         if let (Some(first), Some(found)) = (rows.weight, row.weight)
             && first.to_bits() != found.to_bits()
         {
             let problem = format!("weight {found}, but {first} in the row before; a hypothesis has one weight");
-            return Err(in_field("weight", problem));
+            return Err(Fault::named("weight", problem));
         }
         if rows.positions.len() == HORIZON {
-            return Err(whole_line(wrong_length(HORIZON + 1)));
+            return Err(Fault::from(wrong_length(HORIZON + 1)));
         }
         rows.frames.push(row.frame);
         rows.positions.push(row.position);
@@ -177,20 +171,21 @@ impl PedestrianRows {
     fn forecast(
         mut self,
         numbering: &mut HypothesisNumbering,
-    ) -> Result<(PedestrianKey, PedestrianForecast), AtLine<Wrong>> {
+    ) -> Result<(PedestrianKey, PedestrianForecast), (usize, Fault)> {
         self.hypotheses.sort_by_key(|rows| rows.hypothesis);
         let numbers: Vec<i64> = self.hypotheses.iter().map(|rows| rows.hypothesis).collect();
-        numbering.check(&numbers, &self.who.named()).map_err(|problem| (self.line, in_field("hypothesis", problem)))?;
+        numbering
+            .check(&numbers, &self.who.named())
+            .map_err(|problem| (self.line, Fault::named("hypothesis", problem)))?;
         let mut forecast = PedestrianForecast::default();
         for rows in self.hypotheses {
             let found = rows.positions.len();
             if found != HORIZON {
-                return Err((rows.line, whole_line(wrong_length(found))));
+                return Err((rows.line, Fault::from(wrong_length(found))));
             }
             let frames = forecast.frames.get_or_insert_with(|| rows.frames.clone());
             if *frames != rows.frames {
-                let problem = wrong_frames(&rows.frames, frames);
-                return Err((rows.line, in_field("frame", problem)));
+                return Err((rows.line, Fault::named("frame", wrong_frames(&rows.frames, frames))));
             }
             forecast.positions.extend(rows.positions);
             if let Some(weight) = rows.weight {
@@ -201,23 +196,22 @@ impl PedestrianRows {
     }
 }
 
-pub(super) fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
-    let number = text.parse().ok();
-    let number = number.or_else(|| lines::whole(text.parse().ok()?));
-    number.ok_or_else(|| in_field(name, format!("must be a whole number, found {:?}", quoted(text))))
+pub(super) fn whole_number(text: &str, name: &'static str) -> Result<i64, Fault> {
+    let number = text.parse().ok().or_else(|| lines::whole_number(text.parse().ok()?));
+    number.ok_or_else(|| Fault::named(name, format!("must be a whole number, found {:?}", quoted(text))))
 }
 
 /// A pedestrian: a whole number, or a word that is not a number.
-fn name(text: &str) -> Result<PedestrianName, Wrong> {
+fn name(text: &str) -> Result<PedestrianName, Fault> {
     let wrong = text.is_empty() || text.parse::<f64>().is_ok_and(|n| !n.is_infinite() && n.fract() != 0.0);
     if wrong {
         let problem = format!("must be a whole number or a word, found {:?}", quoted(text));
-        return Err(in_field(REQUIRED[1], problem));
+        return Err(Fault::named(REQUIRED[1], problem));
     }
     Ok(PedestrianName::of_text(text))
 }
 
-pub(super) fn finite(text: &str, name: &'static str) -> Result<f64, Wrong> {
+pub(super) fn finite(text: &str, name: &'static str) -> Result<f64, Fault> {
     let number = text.parse::<f64>().ok().filter(|n| n.is_finite());
-    number.ok_or_else(|| in_field(name, not_finite(&format!("{:?}", quoted(text)))))
+    number.ok_or_else(|| Fault::named(name, not_finite(&format!("{:?}", quoted(text)))))
 }

@@ -3,19 +3,16 @@
 use std::io::BufRead;
 
 use csv_core::{ReadRecordResult, Reader};
+use ddl_data::{Fault, FormatError, TextLines};
 
 use crate::external::error::ExternalError;
-use crate::external::lines::{Lines, Wrong, whole_line};
-
-pub(super) type AtLine<T> = (usize, T);
 
 /// The rows of a table. Each is read from one line, so that an open quote does not include the rest of the file.
 pub(super) struct TableRows<R> {
-    lines: Lines<R>,
+    lines: TextLines<R>,
     reader: Reader,
-    /// The current line, its number, and the start of its next row: a carriage return also ends a row.
+    /// The current line, and the start of its next row: a carriage return also ends a row.
     line: Vec<u8>,
-    pub(super) number: usize,
     at: usize,
     fields: Vec<u8>,
     ends: Vec<usize>,
@@ -40,16 +37,14 @@ impl Fields<'_> {
 }
 
 impl<R: BufRead> TableRows<R> {
-    pub(super) fn new(lines: Lines<R>) -> Self {
-        Self { lines, reader: Reader::new(), line: Vec::new(), number: 0, at: 0, fields: Vec::new(), ends: Vec::new() }
+    pub(super) fn new(lines: TextLines<R>) -> Self {
+        Self { lines, reader: Reader::new(), line: Vec::new(), at: 0, fields: Vec::new(), ends: Vec::new() }
     }
 
     pub(super) fn next(&mut self) -> Result<Option<Fields<'_>>, ExternalError> {
         if self.at == self.line.len() {
-            let Some((number, text)) = self.lines.next_line()? else {
-                return Ok(None);
-            };
-            (self.number, self.at) = (number, 0);
+            let Some(text) = self.lines.next_filled()? else { return Ok(None) };
+            self.at = 0;
             self.line.clear();
             self.line.extend_from_slice(text.as_bytes());
             self.line.push(b'\n');
@@ -61,16 +56,18 @@ impl<R: BufRead> TableRows<R> {
         let (result, read, _, count) = self.reader.read_record(line, &mut self.fields, &mut self.ends);
         self.at += read;
         if result != ReadRecordResult::Record {
-            return Err(self.wrong(whole_line("a quote is not closed on this line")));
+            return Err(self.wrong("a quote is not closed on this line").into());
         }
         Ok(Some(Fields { text: &self.fields, ends: &self.ends[..count] }))
     }
 
-    pub(super) fn wrong(&self, wrong: Wrong) -> ExternalError {
-        self.lines.wrong(self.number, wrong)
+    /// The number of the current line.
+    pub(super) fn number(&self) -> usize {
+        self.lines.number()
     }
 
-    pub(super) fn wrong_at(&self, (line, wrong): AtLine<Wrong>) -> ExternalError {
-        self.lines.wrong(line, wrong)
+    /// The error of a fault in the current line.
+    pub(super) fn wrong(&self, fault: impl Into<Fault>) -> FormatError {
+        self.lines.wrong(fault)
     }
 }

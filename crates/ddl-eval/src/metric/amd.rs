@@ -23,7 +23,7 @@
 
 use ddl_core::{HORIZON, Spread};
 
-use crate::metric::gaussian::{Covariance, Moments};
+use crate::metric::gaussian::{PlaneCovariance, PointMoments};
 use crate::metric::kde::MIN_DEVIATION;
 use crate::scored_window::ScoredWindow;
 
@@ -33,7 +33,7 @@ pub struct DistributionErrors {
     /// Mean Mahalanobis distance of the truth, deviations.
     pub mahalanobis: f64,
     /// Mean covariance, square metres.
-    pub covariance: Covariance,
+    pub covariance: PlaneCovariance,
 }
 
 impl DistributionErrors {
@@ -43,19 +43,18 @@ impl DistributionErrors {
             return None;
         }
         let weights = scene.weights(i);
-        let (mut distance, mut covariance) = (0.0, Covariance::default());
+        let (mut distance, mut covariance) = (0.0, PlaneCovariance::default());
         for (t, p) in scene.truth(i).iter().enumerate() {
-            let moments = Moments::of(&scene.hypotheses_at(i, t), &weights);
+            let moments = PointMoments::of(&scene.hypotheses_at(i, t), &weights);
             // The variance of Student's t.
             let inflation = Spread::DEGREES / (Spread::DEGREES - 2.0);
             let about = inflation * scene.forecast().scale(i, t).unwrap_or(0.0).powi(2);
             let axes = moments
                 .covariance
-                .plus(Covariance { xx: about, xy: 0.0, yy: about })
+                .plus(PlaneCovariance { xx: about, xy: 0.0, yy: about })
                 .principal_axes()
                 .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
-            let off = [p[0] - moments.mean[0], p[1] - moments.mean[1]];
-            distance += axes.mahalanobis_squared(off).sqrt();
+            distance += axes.mahalanobis_squared([p[0] - moments.mean[0], p[1] - moments.mean[1]]).sqrt();
             covariance = covariance.plus(axes.covariance());
         }
         Some(Self { mahalanobis: distance / HORIZON as f64, covariance: covariance.scaled(1.0 / HORIZON as f64) })
@@ -63,6 +62,6 @@ impl DistributionErrors {
 }
 
 /// AMV of a mean covariance: its largest eigenvalue, square metres.
-pub(crate) fn amv(mean_covariance: Covariance) -> f64 {
+pub(crate) fn amv(mean_covariance: PlaneCovariance) -> f64 {
     mean_covariance.principal_axes().variances[0]
 }

@@ -30,9 +30,7 @@ pub(crate) const PEDESTRIAN_RADIUS: f64 = 0.2;
 /// Infinite when either track is empty. Frames beyond the shorter track are ignored.
 pub fn closest_approach(a: &[Position], b: &[Position]) -> f64 {
     let mut apart = a.iter().zip(b).map(|(p, q)| [p[0] - q[0], p[1] - q[1]]);
-    let Some(mut before) = apart.next() else {
-        return f64::INFINITY;
-    };
+    let Some(mut before) = apart.next() else { return f64::INFINITY };
     let mut least = before[0].hypot(before[1]);
     for next in apart {
         least = least.min(distance_to_origin(before, next));
@@ -95,8 +93,7 @@ mod tests {
     fn each_is_told_alone_and_touching_is_no_collision() {
         let standing = |x: f64| [[x, 0.0]; 2];
         let (a, b, c, d) = (standing(0.0), standing(0.3), standing(0.6), standing(1.1));
-        let hit = collides(&[&a, &b, &c, &d], PEDESTRIAN_RADIUS);
-        assert_eq!(hit, [true, true, true, false]);
+        assert_eq!(collides(&[&a, &b, &c, &d], PEDESTRIAN_RADIUS), [true, true, true, false]);
         assert_eq!(collides(&[&a, &standing(0.4)], PEDESTRIAN_RADIUS), [false; 2]);
         assert_eq!(collides(&[&a], PEDESTRIAN_RADIUS), [false]);
     }

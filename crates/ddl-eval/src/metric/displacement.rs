@@ -35,9 +35,6 @@ pub(crate) fn final_displacement(forecast: &[Position], truth: &[Position]) -> f
     distance(forecast[forecast.len() - 1], truth[truth.len() - 1])
 }
 
-/// ADE or FDE of each hypothesis of a pedestrian, metres.
-type Errors = fn(&DisplacementErrors, usize) -> &[f64];
-
 /// ADE and FDE of every hypothesis of every pedestrian of a scene: two tables `[N][K]`, metres.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DisplacementErrors {
@@ -101,8 +98,7 @@ impl DisplacementErrors {
 
     fn scene_means(&self) -> [Vec<f64>; 2] {
         let n = self.ade.len() / self.hypotheses;
-        let metrics: [Errors; 2] = [Self::ade, Self::fde];
-        metrics.map(|metric| {
+        [Self::ade, Self::fde].map(|metric| {
             let mean = |k: usize| (0..n).map(|i| metric(self, i)[k]).sum::<f64>() / n as f64;
             (0..self.hypotheses).map(mean).collect()
         })
@@ -118,8 +114,7 @@ fn least(errors: &[f64]) -> usize {
 /// # Panics
 /// When `i` is out of range or there are more errors than hypotheses.
 pub(crate) fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
-    let weighted = errors.iter().enumerate();
-    weighted.map(|(k, error)| forecast.weight(i, k) * error).sum()
+    errors.iter().enumerate().map(|(k, error)| forecast.weight(i, k) * error).sum()
 }
 
 /// Distance of the nearest goal of pedestrian `i` from the true endpoint, metres; `None` without goals.

@@ -11,7 +11,7 @@ use ddl_core::Position;
 
 /// A symmetric 2 x 2 matrix, square metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Covariance {
+pub struct PlaneCovariance {
     /// Variance along x.
     pub xx: f64,
     /// Covariance of x and y.
@@ -20,7 +20,7 @@ pub struct Covariance {
     pub yy: f64,
 }
 
-impl Covariance {
+impl PlaneCovariance {
     /// Every entry times `factor` (no unit).
     #[must_use]
     pub(crate) fn scaled(self, factor: f64) -> Self {
@@ -59,9 +59,9 @@ impl PrincipalAxes {
     }
 
     /// The matrix that has these axes.
-    pub(crate) fn covariance(self) -> Covariance {
+    pub(crate) fn covariance(self) -> PlaneCovariance {
         let ([large, small], [cos, sin]) = (self.variances, self.axis);
-        Covariance {
+        PlaneCovariance {
             xx: large * cos * cos + small * sin * sin,
             xy: (large - small) * cos * sin,
             yy: large * sin * sin + small * cos * cos,
@@ -83,14 +83,14 @@ impl PrincipalAxes {
 
 /// Mean and covariance of weighted points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Moments {
+pub(crate) struct PointMoments {
     /// The mean, metres.
     pub mean: Position,
     /// The covariance, square metres.
-    pub covariance: Covariance,
+    pub covariance: PlaneCovariance,
 }
 
-impl Moments {
+impl PointMoments {
     /// The moments of points with weights that sum to 1.
     ///
     /// # Panics
@@ -99,9 +99,9 @@ impl Moments {
         assert_eq!(points.len(), weights.len(), "one weight a point");
         let weighted = || points.iter().zip(weights);
         let mean = weighted().fold([0.0, 0.0], |m, (p, w)| [m[0] + w * p[0], m[1] + w * p[1]]);
-        let covariance = weighted().fold(Covariance::default(), |c, (p, w)| {
+        let covariance = weighted().fold(PlaneCovariance::default(), |c, (p, w)| {
             let d = [p[0] - mean[0], p[1] - mean[1]];
-            c.plus(Covariance { xx: w * d[0] * d[0], xy: w * d[0] * d[1], yy: w * d[1] * d[1] })
+            c.plus(PlaneCovariance { xx: w * d[0] * d[0], xy: w * d[0] * d[1], yy: w * d[1] * d[1] })
         });
         Self { mean, covariance }
     }

@@ -112,8 +112,7 @@ fn colliding<'a>(n: usize, futures: usize, path: impl Fn(usize, usize) -> &'a [P
     order.sort_by(|&a, &b| whole[a][0][0].total_cmp(&whole[b][0][0]));
     let mut hit = TOO_NEAR.map(|_| vec![false; n * futures]);
     for (at, &i) in order.iter().enumerate() {
-        let ahead = order[at + 1..].iter().copied();
-        for j in ahead.take_while(|&j| whole[j][0][0] < whole[i][1][0] + TOO_NEAR[0]) {
+        for j in order[at + 1..].iter().copied().take_while(|&j| whole[j][0][0] < whole[i][1][0] + TOO_NEAR[0]) {
             if far_apart(whole[i], whole[j]) {
                 continue;
             }
@@ -144,8 +143,7 @@ mod tests {
     #[test]
     fn who_comes_too_near_is_counted_at_each_distance_in_each_future() {
         let along = |x: f64, y: f64| (0..12).map(|t| [x, y + 0.2 * f64::from(t)]).collect::<Vec<_>>();
-        let places = [[0.3, 0.0], [0.0, 0.1], [0.4, -0.2]];
-        let paths = places.map(|[x, y]| [along(x, y), along(50.0 * x, 40.0 * y)]);
+        let paths = [[0.3, 0.0], [0.0, 0.1], [0.4, -0.2]].map(|[x, y]| [along(x, y), along(50.0 * x, 40.0 * y)]);
         assert_eq!(colliding(3, 2, |i, k| paths[i][k].as_slice()), [vec![3, 0], vec![0, 0]]);
         let standing = [[0.0, 0.0], [0.0, -0.35], [0.15, 9.0], [0.0, 9.1]];
         assert_eq!(colliding(4, 1, |i, _| &standing[i..=i]), [vec![4], vec![2]]);

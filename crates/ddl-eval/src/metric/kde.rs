@@ -28,7 +28,7 @@
 
 use ddl_core::{Position, Spread, distance};
 
-use crate::metric::gaussian::Moments;
+use crate::metric::gaussian::PointMoments;
 use crate::scored_window::ScoredWindow;
 
 /// Lower bound of log densities, nats, so that one large error does not dominate the mean.
@@ -45,7 +45,7 @@ pub(crate) const MIN_DEVIATION: f64 = 0.01;
 /// The sum of exponentials is taken relative to its largest term. If all weight is on one point, the covariance is 0/0
 /// and is set to 0.
 pub(crate) fn log_density(points: &[Position], weights: &[f64], position: Position) -> f64 {
-    let moments = Moments::of(points, weights);
+    let moments = PointMoments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();
     // 1 - sum of squares, without cancellation when one weight is nearly 1.
     let unbiased: f64 = weights.iter().map(|w| w * (1.0 - w)).sum();

@@ -112,8 +112,7 @@ mod tests {
         let nll = -(0.8 * density(21.0) + 0.2 * density(1.0)).ln();
         assert_relative_eq!(kde_nll(&scene, 0).unwrap(), nll, epsilon = 1e-12);
         let errors = DistributionErrors::of(&scene, 0).unwrap();
-        let deviations = 8.5 / 16.75_f64.sqrt();
-        assert_relative_eq!(errors.mahalanobis, deviations, epsilon = 1e-12);
+        assert_relative_eq!(errors.mahalanobis, 8.5 / 16.75_f64.sqrt(), epsilon = 1e-12);
         assert_relative_eq!(errors.covariance.yy, 0.75, epsilon = 1e-12);
     }
 }

@@ -85,12 +85,10 @@ mod tests {
     #[test]
     fn probabilities_come_true_or_not() {
         let reliability = |weights: &[f64; 2], second: usize| {
-            let sets = (0..400).map(|i| (&weights[..], usize::from(i % second == 0)));
-            Reliability::of(sets).unwrap()
+            Reliability::of((0..400).map(|i| (&weights[..], usize::from(i % second == 0)))).unwrap()
         };
         let sound = reliability(&[0.75, 0.25], 4);
-        let entropy = -(0.75 * 0.75_f64.ln() + 0.25 * 0.25_f64.ln());
-        assert_relative_eq!(sound.log_loss, entropy, epsilon = 1e-12);
+        assert_relative_eq!(sound.log_loss, -(0.75 * 0.75_f64.ln() + 0.25 * 0.25_f64.ln()), epsilon = 1e-12);
         assert_relative_eq!(sound.uniform_log_loss, 2.0_f64.ln(), epsilon = 1e-12);
         assert!(sound.expected_error < 0.01);
         assert_eq!(sound.bins.len(), 10);

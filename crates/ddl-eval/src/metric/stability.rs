@@ -47,8 +47,7 @@ impl RolloutStability {
             let (before, after) = (distance(here, goal), distance(next, goal));
             result.decreasing &= after < before || before.max(after) <= GOAL_TOLERANCE;
             if before > GOAL_TOLERANCE && distance(here, next) > GOAL_TOLERANCE {
-                let turn = turn(minus(next, here), minus(goal, here)).abs();
-                result.largest_turn = result.largest_turn.max(turn);
+                result.largest_turn = result.largest_turn.max(turn(minus(next, here), minus(goal, here)).abs());
             }
             result.end_distance = after;
             here = next;

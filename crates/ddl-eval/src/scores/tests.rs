@@ -24,8 +24,7 @@ fn what_does_not_belong_together_is_refused() {
     let tracks = || vec![windows[0].track(0).to_vec()];
     let full = |name: &str, start| Window::new(name, start, 10, windows[0].pedestrians().to_vec(), tracks()).unwrap();
     for (full, fits) in [(full("made up", 0), true), (full("other", 0), false), (full("made up", 9), false)] {
-        let scored = Scores::under(Protocol::Fair, &windows[..1], &[full], std::slice::from_ref(&one));
-        assert_eq!(scored.is_ok(), fits);
+        assert_eq!(Scores::under(Protocol::Fair, &windows[..1], &[full], std::slice::from_ref(&one)).is_ok(), fits);
     }
     let ahead = [windows[0].without_future()];
     assert_eq!(of_window(&ahead, std::slice::from_ref(&one)), WindowProblem::NoFuture);

@@ -61,8 +61,7 @@ pub fn block_errors(
         .collect::<Result<_, EvaluationError>>()?;
     let mut blocks: BTreeMap<(&str, i64), BlockErrors> = BTreeMap::new();
     for (window, [min_ade, min_fde]) in windows.iter().zip(sums) {
-        let length = BLOCK_STEPS.saturating_mul(window.frame_step());
-        let block = window.start_frame().div_euclid(length);
+        let block = window.start_frame().div_euclid(BLOCK_STEPS.saturating_mul(window.frame_step()));
         let sum = blocks.entry((window.recording(), block)).or_insert_with(|| BlockErrors {
             recording: window.recording().to_owned(),
             block,

@@ -119,13 +119,11 @@ mod tests {
         }
         assert_relative_eq!(compared.p_value, 0.0149, epsilon = 0.004);
         // No pattern drawn is as extreme: the observed one counts.
-        let surely = compare(&[0.1; 40], &[0.2; 40]).p_value;
-        assert_relative_eq!(surely, 1.0 / 10_001.0, epsilon = 1e-12);
+        assert_relative_eq!(compare(&[0.1; 40], &[0.2; 40]).p_value, 1.0 / 10_001.0, epsilon = 1e-12);
         // Two of 1,024 patterns are as extreme, though their sums differ in the last bits.
         let second: Vec<f64> = (0..10).map(|i| 0.3 + 0.1 * f64::from(i)).collect();
         let first: Vec<f64> = second.iter().map(|error| error - 0.1).collect();
-        let in_every_block = compare(&first, &second).p_value;
-        assert_relative_eq!(in_every_block, 2.0 / 1024.0, epsilon = 1.5e-3);
+        assert_relative_eq!(compare(&first, &second).p_value, 2.0 / 1024.0, epsilon = 1.5e-3);
     }
 
     #[test]

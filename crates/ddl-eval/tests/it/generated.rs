@@ -35,7 +35,6 @@ pub(crate) fn forecast(
                 *weight /= sum;
             }
         }
-        let goals = with_goals.then_some(goals);
-        Forecast::new(pedestrians, k, positions, weights, goals).unwrap()
+        Forecast::new(pedestrians, k, positions, weights, with_goals.then_some(goals)).unwrap()
     })
 }

@@ -11,8 +11,7 @@ use serde_json::Value;
 use crate::generated::{self, position};
 
 fn scene(n: usize, k: usize) -> impl Strategy<Value = (Window, Forecast)> {
-    let forecast = generated::forecast(n, k, true, position());
-    (generated::window(("made up", 0, 10), n, position()), forecast)
+    (generated::window(("made up", 0, 10), n, position()), generated::forecast(n, k, true, position()))
 }
 
 fn any_scene() -> impl Strategy<Value = (Window, Forecast)> {
@@ -22,8 +21,7 @@ fn any_scene() -> impl Strategy<Value = (Window, Forecast)> {
 /// Every metric, with those of whole futures.
 fn scores(window: &Window, forecast: &Forecast) -> Scores {
     let conditions = Conditions::new(Convention::Star, WindowRule::Complete, Protocol::Joint, "yard", "any");
-    let row = ResultRow::score(conditions, std::slice::from_ref(window), std::slice::from_ref(forecast));
-    row.unwrap().scores
+    ResultRow::score(conditions, std::slice::from_ref(window), std::slice::from_ref(forecast)).unwrap().scores
 }
 
 /// All numbers except angles: lengths, shares and densities, which do not change under motions of the plane.
@@ -50,8 +48,7 @@ fn invariants(scores: &Scores) -> Vec<f64> {
 
 /// Agreement up to rounding, which a narrow distribution magnifies.
 fn all_agree(a: &[f64], b: &[f64]) -> bool {
-    let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 + 1e-8 * a.abs();
-    a.len() == b.len() && a.iter().zip(b).all(close)
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 + 1e-8 * a.abs())
 }
 
 /// Some of the hypotheses of every pedestrian, with positions and goals moved; equal weights unless all are taken.
@@ -64,8 +61,7 @@ fn rebuilt(forecast: &Forecast, order: &[usize], by: impl Fn(Position) -> Positi
         if takes_every { forecast.weight(i, h) } else { 1.0 / k as f64 }
     };
     let goals = pairs().map(|(i, h)| forecast.goal(i, h).map(&by)).collect();
-    let positions = pairs().flat_map(path).collect();
-    Forecast::new(n, k, positions, pairs().map(weight).collect(), goals).unwrap()
+    Forecast::new(n, k, pairs().flat_map(path).collect(), pairs().map(weight).collect(), goals).unwrap()
 }
 
 fn in_order(forecast: &Forecast) -> Vec<usize> {
@@ -126,8 +122,7 @@ proptest! {
         let held = verdicts.iter().filter(|&&held| held).count();
         let certified = forecast.clone().with_certified(verdicts).unwrap();
         let mut counted = scores(&window, &certified);
-        let stability = counted.stability.as_mut().unwrap();
-        let share = stability.certified.take().unwrap();
+        let share = counted.stability.as_mut().unwrap().certified.take().unwrap();
         prop_assert!((share * pairs as f64 - held as f64).abs() < 1e-9);
         prop_assert_eq!(counted, scores(&window, &forecast));
         let mixed = Scores::evaluate(&[window.clone(), window], &[certified, forecast]);
@@ -195,8 +190,7 @@ proptest! {
         prop_assert!((scores.kde_nll.unwrap() + highest).abs() < 1e-9);
         prop_assert!(scores.amd.unwrap() < 1e-9);
         prop_assert!((scores.amv.unwrap() - 1e-4).abs() < 1e-12);
-        let diversity = (scores.diversity, scores.end_diversity);
-        prop_assert_eq!(diversity, (Some(0.0), Some(0.0)));
+        prop_assert_eq!((scores.diversity, scores.end_diversity), (Some(0.0), Some(0.0)));
     }
 
     #[test]
@@ -294,8 +288,7 @@ proptest! {
         prop_assert_eq!(&seen.without_future(), &all.without_future());
         for protocol in [Protocol::Fair, Protocol::Single] {
             let forecast = |window: &Window| {
-                let forecasts = protocol.forecast(&SocialForce, std::slice::from_ref(window));
-                forecasts.unwrap().remove(0)
+                protocol.forecast(&SocialForce, std::slice::from_ref(window)).unwrap().remove(0)
             };
             let (of_all, of_seen) = (forecast(&all), forecast(&seen));
             prop_assert_eq!(of_seen.pedestrians(), scored);

@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 #[derive(Deserialize)]
-struct Reference {
+struct OtherScores {
     regions: RegionTable,
     scores: Map<String, Value>,
     bare: Map<String, Value>,
     blocks: [Value; 2],
     baselines: Value,
-    scenes: Vec<Scene>,
+    scenes: Vec<OtherScene>,
 }
 
 #[derive(Deserialize)]
-struct Scene {
+struct OtherScene {
     recording: String,
     start: i64,
     step: i64,
@@ -60,8 +60,7 @@ fn json(value: impl Serialize) -> Value {
 
 #[test]
 fn every_score_of_several_windows_is_the_one_computed_elsewhere() {
-    let text = include_str!("../reference/scores.json");
-    let mut reference: Reference = serde_json::from_str(text).unwrap();
+    let mut reference: OtherScores = serde_json::from_str(include_str!("../reference/scores.json")).unwrap();
     let (mut full_windows, mut windows, mut bare, mut forecasts) = (vec![], vec![], vec![], vec![]);
     for scene in reference.scenes {
         let ids = scene.ids.into_iter().map(PedestrianId).collect();

@@ -57,7 +57,7 @@ impl RecordingPlayer<'_> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
         let futures = recording.futures();
         let moments = shown.iter().zip(answers).map(|(window, answer)| {
-            let seen = futures.of(window);
+            let seen = futures.after(window);
             let mut moment = ForecastSnapshot::under_way(model.name(), window, answer.forecast(), &seen)?;
             moment.frame = clock.number(moment.frame).nearest();
             moment.when = Some(clock.words(window.frames()[OBSERVED - 1]));

@@ -30,7 +30,7 @@ pub(crate) fn hypothesis(x: f64) -> String {
 }
 
 /// All three pedestrians with one hypothesis each, at x = 1, 2 and 3.
-pub(crate) fn whole() -> String {
+pub(crate) fn whole_file() -> String {
     line(70, 3, &hypothesis(1.0)) + &line(70, 5, &hypothesis(2.0)) + &line(80, 5, &hypothesis(3.0))
 }
 
@@ -38,9 +38,8 @@ pub(crate) fn read(text: &str, format: ExternalFormat, coverage: Coverage) -> Re
     external::read_from(text.as_bytes(), "f", format, &windows(), coverage)
 }
 
-pub(crate) fn of(windows: &[Window], text: &str, coverage: Coverage) -> Result<Matched, ExternalError> {
-    let format = ExternalFormat::JsonLines;
-    external::read_from(text.as_bytes(), "f", format, windows, coverage)
+pub(crate) fn matched_of(windows: &[Window], text: &str, coverage: Coverage) -> Result<Matched, ExternalError> {
+    external::read_from(text.as_bytes(), "f", ExternalFormat::JsonLines, windows, coverage)
 }
 
 pub(crate) fn conditions(protocol: Protocol) -> Conditions {

@@ -9,14 +9,15 @@ use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat};
 use ddl_eval::{Conditions, Protocol, Scores};
 
 use super::files::{
-    HEADER, complaint, conditions, expected, hypothesis, line, of, read, rows, still, table, whole, windows,
+    HEADER, complaint, conditions, expected, hypothesis, line, matched_of, read, rows, still, table, whole_file,
+    windows,
 };
 
 #[test]
 fn every_format_says_the_same() {
     for (text, format) in [
-        (whole(), ExternalFormat::JsonLines),
-        (format!("\u{feff}\n{}", whole().replace('\n', "\r\n")), ExternalFormat::JsonLines),
+        (whole_file(), ExternalFormat::JsonLines),
+        (format!("\u{feff}\n{}", whole_file().replace('\n', "\r\n")), ExternalFormat::JsonLines),
         (table(), ExternalFormat::Table),
         (table().replace('\n', "\r"), ExternalFormat::Table),
         (table().replace("yard,", "\"yard\" ,").replace(",3,0,", ",3.0, 0 ,"), ExternalFormat::Table),
@@ -38,8 +39,7 @@ fn pedestrians_may_have_words_for_names() {
             writeln!(seen, "{},{word},{t},{y}", 10 * t).unwrap();
         }
     }
-    let recording = parse_recording(seen.as_bytes(), "yard", Format::Table).unwrap();
-    let windows = recording.windows(WindowRule::Complete);
+    let windows = parse_recording(seen.as_bytes(), "yard", Format::Table).unwrap().windows(WindowRule::Complete);
     let mut asked = Vec::new();
     external::write_windows(&windows, &mut asked).unwrap();
     let asked = String::from_utf8(asked).unwrap();
@@ -58,7 +58,7 @@ fn pedestrians_may_have_words_for_names() {
         assert_eq!(matched.unwrap().forecasts, [both], "{format:?}");
     }
     let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");
-    let message = of(&windows, &one, Coverage::Whole).unwrap_err().to_string();
+    let message = matched_of(&windows, &one, Coverage::Whole).unwrap_err().to_string();
     assert!(message.contains("observed until 70 pedestrian 7f3e-aa41"));
 }
 
@@ -76,9 +76,8 @@ fn what_ddl_forecast_writes_beside_is_passed_over_and_goals_of_null_are_none() {
     let forecast = &matched.forecasts[0];
     assert_eq!(forecast.goal(0, 1), Some([2.0, 0.0]));
     assert!((forecast.weight(0, 0) - 0.75).abs() < f64::EPSILON);
-    let text = whole().replace("{\"positions\"", "{\"goal\":null,\"weight\":1.0,\"positions\"");
-    let matched = read(&text, ExternalFormat::JsonLines, Coverage::Whole).unwrap();
-    assert_eq!(matched.forecasts, expected());
+    let text = whole_file().replace("{\"positions\"", "{\"goal\":null,\"weight\":1.0,\"positions\"");
+    assert_eq!(read(&text, ExternalFormat::JsonLines, Coverage::Whole).unwrap().forecasts, expected());
 }
 
 #[test]
@@ -109,7 +108,7 @@ fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
     let (.., named) = subset(&other, Coverage::Intersection, Some(every));
     let part = "pedestrians forecast by another program: 1 of 3, digest 0f80b53d";
     assert_eq!(named, format!("{every}; {part}"));
-    assert_eq!(subset(&whole(), Coverage::Whole, Some(every)).2, every);
+    assert_eq!(subset(&whole_file(), Coverage::Whole, Some(every)).2, every);
 }
 
 #[test]
@@ -160,7 +159,7 @@ fn baselines_see_whom_nobody_forecast() {
         format!("{{\"positions\":{positions:?}}}")
     };
     let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
-    let matched = of(&windows, &text, Coverage::Intersection).unwrap();
+    let matched = matched_of(&windows, &text, Coverage::Intersection).unwrap();
     let rows = external::measure(&conditions(Protocol::Single), &matched).unwrap();
     // 2 has no forecast.
     assert!(rows[0].scores.collision_rate.abs() < f64::EPSILON);
@@ -175,7 +174,7 @@ fn baselines_see_whom_nobody_forecast() {
 
 #[test]
 fn the_protocol_published_is_refused_with_the_reason() {
-    let matched = read(&whole(), ExternalFormat::JsonLines, Coverage::Whole).unwrap();
+    let matched = read(&whole_file(), ExternalFormat::JsonLines, Coverage::Whole).unwrap();
     let error = external::measure(&conditions(Protocol::Published), &matched).unwrap_err();
     assert!(matches!(error, ExternalError::Published));
     assert!(error.to_string().contains("the forecaster chooses the goal"));
@@ -189,7 +188,7 @@ fn missing_forecasts_and_forecasts_without_a_pedestrian_are_counted_and_named() 
         "f forecasts 1 of the 3 pedestrians in the windows; 2 are missing, the first of them `yard` observed until 70 \
          pedestrian 3, `yard` observed until 80 pedestrian 5; forecast them too, or score the intersection only"
     );
-    let hint = |text: &str| complaint(&(whole() + text), ExternalFormat::JsonLines);
+    let hint = |text: &str| complaint(&(whole_file() + text), ExternalFormat::JsonLines);
     let elsewhere = line(70, 5, &hypothesis(2.0)).replace("{\"obs", "{\"recording\":\"eth\",\"obs");
     assert_eq!(
         hint(&elsewhere),
@@ -219,8 +218,8 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
     let mut two = windows();
     let walk = vec![(0..20).map(|t| [f64::from(t), 9.0]).collect()];
     two.push(Window::new("square", 0, 10, vec![PedestrianId(3)], walk).unwrap());
-    let text = whole();
-    let read = |text: &str| of(&two, text, Coverage::Whole);
+    let text = whole_file();
+    let read = |text: &str| matched_of(&two, text, Coverage::Whole);
     assert_eq!(
         read(&text).unwrap_err().to_string(),
         "f, line 1, recording: is missing, but the windows have several recordings: yard, square"
@@ -247,7 +246,7 @@ fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
         *window = window.map_positions(|_, _, [x, y]| [x + 6.0, y]);
     }
     let measure = |text: &str| {
-        let matched = of(&far, text, Coverage::Intersection).unwrap();
+        let matched = matched_of(&far, text, Coverage::Intersection).unwrap();
         external::measure(&conditions(Protocol::Fair), &matched)
     };
     for (text, expected) in [

@@ -2,7 +2,7 @@
 
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 
-use super::files::{HEADER, complaint, hypothesis, line, rows, whole, windows};
+use super::files::{HEADER, complaint, hypothesis, line, rows, whole_file, windows};
 
 const CASES: &str = include_str!("mistakes.txt");
 
@@ -15,8 +15,7 @@ fn check(format: ExternalFormat, text: &str, expected: &str) {
 /// The cases of a section of `mistakes.txt`.
 pub(super) fn cases_of(section: &str) -> Vec<String> {
     let (_, cases) = CASES.split_once(&format!("== {section}\n")).unwrap();
-    let cases = cases.split("\n== ").next().unwrap().trim().replace("\\\n", "");
-    cases.lines().map(str::to_owned).collect()
+    cases.split("\n== ").next().unwrap().trim().replace("\\\n", "").lines().map(str::to_owned).collect()
 }
 
 /// The cases of a section; `file` makes the file of the parts of a case.
@@ -97,12 +96,12 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
 
 #[test]
 fn text_that_is_not_utf8_is_refused_at_its_line() {
-    let mut bytes = whole().into_bytes();
+    let mut bytes = whole_file().into_bytes();
     bytes.extend(b"\xff\xfe\n");
     let other: &[u8] = b"\n\xff";
     for (format, text, line) in [(ExternalFormat::JsonLines, &bytes[..], 4), (ExternalFormat::Table, other, 2)] {
         let error = external::read_from(text, "f", format, &windows(), Coverage::Whole);
-        let expected = format!("f, line {line}: the text is not UTF-8");
+        let expected = format!("f, line {line}: the text is not UTF-8; export the file as plain UTF-8 or ASCII text");
         assert_eq!(error.unwrap_err().to_string(), expected);
     }
 }

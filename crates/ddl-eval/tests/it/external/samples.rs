@@ -22,8 +22,7 @@ proptest! {
         (window, forecast) in (1..4_usize, 1..21_usize).prop_flat_map(|(n, k)| {
             let position = prop_oneof![-1e6..1e6_f64, prop::num::f64::SUBNORMAL, Just(-0.0)];
             let position = (position.clone(), position).prop_map(|(x, y)| [x, y]);
-            let window = generated::window(("a yard", -90, 6), n, position.clone());
-            (window, generated::forecast(n, k, false, position))
+            (generated::window(("a yard", -90, 6), n, position.clone()), generated::forecast(n, k, false, position))
         }),
         later in any::<bool>(),
     ) {
@@ -68,8 +67,7 @@ fn files_are_those_of_the_literature() {
     fs::create_dir_all(&moment).unwrap();
     let rows = (1..=12).map(|t| format!("{}.000 1.000 1.250 -2.000\n", 850 + 10 * t));
     fs::write(moment.join("sample_000.txt"), rows.collect::<String>()).unwrap();
-    let matched = read_samples(folder.path(), &eth, ALL).unwrap();
-    assert_eq!(matched.forecasts[0].hypothesis(0, 0), [[1.25, -2.0]; 12]);
+    assert_eq!(read_samples(folder.path(), &eth, ALL).unwrap().forecasts[0].hypothesis(0, 0), [[1.25, -2.0]; 12]);
     let again = write_samples(&windows(), &expected(), folder.path()).unwrap_err();
     assert!(again.to_string().ends_with("is not empty; give a new folder"));
 }
