@@ -2,7 +2,7 @@
 
 use ddl_core::Window;
 
-use crate::convention::{ConventionPlan, FoldPlan};
+use crate::convention_plan::{ConventionPlan, FoldPlan};
 use crate::file_error::DataError;
 use crate::recording::Recording;
 use crate::rule::WindowRule;

@@ -72,8 +72,9 @@
 
 mod class;
 mod clock;
-#[cfg(feature = "files")]
 mod convention;
+#[cfg(feature = "files")]
+mod convention_plan;
 #[cfg(feature = "files")]
 mod dataset;
 mod error;
@@ -102,7 +103,6 @@ mod windows;
 
 pub use class::is_vehicle;
 pub use clock::{Clock, ClockError, FrameNumber, TimeUnit};
-#[cfg(feature = "files")]
 pub use convention::Convention;
 #[cfg(feature = "files")]
 pub use dataset::Dataset;

@@ -157,7 +157,7 @@ impl LiveHandle {
         let mut turn = SessionTurn::take(py, &self.session)?;
         let close = move |_: &_| turn.session().map(Session::close).unwrap_or_default();
         match run_on(User::Live, py, close, |_| Ok(()))?.pop() {
-            Some(Note::MemoryFailed(error)) => Err(Arc::try_unwrap(error).map_or_else(|error| of_any(error), raised)),
+            Some(Note::MemoryFailed(error)) => Err(Arc::try_unwrap(error).map_or_else(of_any, raised)),
             Some(Note::MemoryUnsaved { unsaved, .. }) => Ok(Some(unsaved.to_string())),
             _ => Ok(None),
         }

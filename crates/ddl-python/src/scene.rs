@@ -92,9 +92,9 @@ impl FuturesHandle {
     }
 
     /// Probabilities `(times, height, width)`, times, and the lowest corner, of an area or of all paths and a margin.
-    fn occupancy<'py>(
+    fn occupancy(
         &self,
-        py: Python<'py>,
+        py: Python<'_>,
         options: (f64, f64, f64, f64),
         area: Option<[f64; 4]>,
     ) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2])> {

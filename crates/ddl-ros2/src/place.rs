@@ -12,6 +12,9 @@ use ddl_ros::msg::Header;
 /// Names of pedestrians that keep their numbers.
 const MOST_NAMES: usize = 100_000;
 
+/// The moment of a frame, with its answer where somebody is observed well enough.
+pub(crate) type FrameForecast = (Header, Option<(Window, Answer)>);
+
 pub(crate) struct WatchedPlace {
     /// One scene, without a name.
     session: Session<Ddl>,
@@ -82,7 +85,7 @@ impl WatchedPlace {
 
     /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; no
     /// answer where nobody is observed well enough.
-    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<(Header, Option<(Window, Answer)>)>> {
+    pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<FrameForecast>> {
         let Some(header) = self.moment.take() else {
             return Ok(None);
         };

@@ -21,6 +21,7 @@ pub fn with_causes(error: &dyn std::error::Error) -> String {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum DdlError {
+    #[cfg(feature = "files")]
     #[error(transparent)]
     Data(#[from] ddl_data::DataError),
     #[error(transparent)]

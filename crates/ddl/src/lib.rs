@@ -61,6 +61,7 @@ pub use forecast::certified::CertificateError;
 pub use forecast::joint::GivenPlan;
 pub use forecast::request::{Motions, Request};
 pub use goals::model::GoalModel;
+#[cfg(feature = "files")]
 pub use goals::remembering::Remembering;
 pub use live::memory_files::{SessionMemory, file_stem};
 pub use live::session::{FrameAnswer, Session};
@@ -70,12 +71,16 @@ pub use note::{MisfitNote, Note};
 pub use run::builtin_model::BuiltinModel;
 pub use run::config::{FORMAT, RunConfig, TrainingData};
 pub use run::directory::{RunDirectory, write_atomically};
+#[cfg(feature = "files")]
+pub use run::few_recordings::starting_model;
+#[cfg(feature = "files")]
+pub use run::folds::fold_by_name;
 pub use run::goal_recipe::{GoalRecipe, ProposalRecipe};
 pub use run::lock::RunLock;
 pub use run::model_source::ModelSource;
-pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal_recipe, starting_model};
+pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal_recipe};
 pub use run::track_units::TrackUnits;
-pub use run::training_data::fold_by_name;
+#[cfg(feature = "files")]
 pub use run::validation_part::ValidationPart;
 pub use tracks::json_lines::json_lines;
 pub use tracks::moment::Moment;

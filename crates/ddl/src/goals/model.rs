@@ -5,7 +5,6 @@ use crate::error::DdlError;
 use crate::goals::experts;
 use crate::goals::packed::{self, Unpacked};
 use crate::goals::reach;
-use crate::goals::remembering::{Remembering, remembering};
 use crate::goals::sets;
 use crate::goals::unforeseen;
 use crate::goals::views;
@@ -14,14 +13,13 @@ use crate::run::directory::RunDirectory;
 use crate::run::enough_weights;
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::model_source::ModelSource;
-use crate::run::training_data::{digest_of_recording, fold_by_name};
+use crate::run::training_data::digest_of_recording;
 use crate::trust::calibration::Calibration;
 use crate::trust::familiarity::TrainingMotions;
 use crate::trust::fingerprints::TrackFingerprints;
 use ddl_core::{ForecastError, Pace, Position, WINDOW, Window};
-use ddl_data::{Convention, Dataset, Fold, Recording};
+use ddl_data::Recording;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
-use ddl_memory::Playback;
 use ddl_network::weights::load_weights;
 use ddl_network::{DeviceChoice, ForecastWindows, MemoryConfig, ProposeEndpoints, ProposedEndpoints};
 use rayon::prelude::*;
@@ -168,31 +166,6 @@ impl GoalModel {
         self.recipe().proposal.as_ref().map_or(0, |recipe| recipe.network.parameter_count())
     }
 
-    /// Adds to each window the memory of its place: tracks of earlier pedestrians in the recordings of the dataset.
-    ///
-    /// # Errors
-    /// When the model has no memory branch.
-    pub fn remembering(
-        &self,
-        windows: &[Window],
-        dataset: &Dataset,
-        what: Remembering,
-    ) -> Result<Vec<Window>, DdlError> {
-        let count = self.recalled_per_pedestrian()?;
-        let fold = self.fold_with_places(dataset)?;
-        let of_place = |recording: &str| -> Vec<&Recording> {
-            let trained_fold =
-                fold.as_ref().filter(|fold| what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty());
-            trained_fold.map_or_else(Vec::new, |fold| fold.training_recordings_of_place(recording))
-        };
-        let playback = match what {
-            Remembering::Place => None,
-            Remembering::Online => Some(Playback::Forward),
-        };
-        let recordings: Vec<&Recording> = dataset.recordings().iter().collect();
-        remembering(&recordings, windows, of_place, playback, count)
-    }
-
     /// Number of earlier pedestrians that the memory branch receives for each pedestrian.
     ///
     /// # Errors
@@ -205,23 +178,6 @@ impl GoalModel {
             )
         })?;
         Ok(memory.remembered)
-    }
-
-    /// The fold that the model was trained on; `None` for own recordings, and if the dataset has another convention.
-    fn fold_with_places<'a>(&self, dataset: &'a Dataset) -> Result<Option<Fold<'a>>, DdlError> {
-        let data = &self.config.data;
-        if dataset.convention() != data.convention || data.convention == Convention::Own {
-            return Ok(None);
-        }
-        let fold = fold_by_name(dataset, &data.fold)?;
-        Ok(Some(fold.with_validation_recordings(&data.validation_recordings)?))
-    }
-
-    /// Whether `fair` and `single` forecasts remember training recordings from the place of the test recordings.
-    pub(crate) fn remembers_place(&self, dataset: &Dataset) -> Result<bool, DdlError> {
-        let fold = self.fold_with_places(dataset)?;
-        let confirmed = fold.is_some_and(|fold| !fold.place_memory_confirmed_by().is_empty());
-        Ok(confirmed && self.memory().is_some())
     }
 
     /// The memory branch of its proposal network, if present.

@@ -20,7 +20,7 @@ pub enum SessionMemory {
         /// The path as given.
         path: PathBuf,
         /// `None` once a scene has it.
-        open: Option<OpenMemory>,
+        open: Option<Box<OpenMemory>>,
     },
     /// In a folder, with a file for each scene.
     Folder(PathBuf),
@@ -47,7 +47,7 @@ impl SessionMemory {
     /// # Errors
     /// As [`at`](Self::at).
     pub fn in_file(path: &Path) -> Result<Self, DdlError> {
-        Ok(Self::File { path: path.to_owned(), open: Some(OpenMemory::open(path)?) })
+        Ok(Self::File { path: path.to_owned(), open: Some(Box::new(OpenMemory::open(path)?)) })
     }
 
     /// Refuses frames without scene names for a folder, and frames of named scenes for a file.
@@ -73,7 +73,7 @@ impl SessionMemory {
         self.ensure_fits(scene)?;
         Ok(match (self, scene) {
             (Self::Kept, _) => Some(OpenMemory { file: None, read: None }),
-            (Self::File { open, .. }, _) => open.take(),
+            (Self::File { open, .. }, _) => open.take().map(|open| *open),
             (Self::Folder(folder), Some(scene)) => Some(OpenMemory::open(&folder.join(file_stem(scene) + ".memory"))?),
             _ => None,
         })

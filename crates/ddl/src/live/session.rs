@@ -233,24 +233,11 @@ impl<M: Borrow<Ddl>> Session<M> {
         self.waiting.ensure_room()?;
         self.ensure_room(pedestrians.len())?;
         let (name, mut notes) = (scene.cloned(), Vec::new());
-        let mut begun = match self.scenes.contains_key(&name) {
-            true => None,
-            false => {
-                notes = self.end_idle();
-                if self.scenes.len() >= Self::MOST_SCENES {
-                    let minutes = self.idle_timeout.as_secs() / 60;
-                    return Err(DdlError::TooManyScenes { limit: Self::MOST_SCENES, minutes });
-                }
-                // A scene whose memory cannot be used is forecast without memory.
-                Some(self.begin_scene(scene).or_else(|error| match scene {
-                    Some(_) => {
-                        notes.push(Note::MemoryFailed(error.into()));
-                        Ok(WatchedScene::new(self.unseen.clone()))
-                    }
-                    None => Err(error),
-                })?)
-            }
-        };
+        let mut begun = None;
+        if !self.scenes.contains_key(&name) {
+            notes = self.end_idle();
+            begun = Some(self.begin_beside_others(scene, &mut notes)?);
+        }
         let Some(watched) = begun.as_mut().or(self.scenes.get_mut(&name)) else { unreachable!("known or begun") };
         watched.tracks.name(names);
         watched.heard = scene.map(|_| Instant::now());
@@ -332,7 +319,7 @@ impl<M: Borrow<Ddl>> Session<M> {
     /// Writes the memories of all scenes, and closes their files. A file that cannot be written stays open, so that it
     /// can be tried again.
     pub fn close(&mut self) -> Vec<Note> {
-        self.scenes.values_mut().flat_map(WatchedScene::close).collect()
+        self.scenes.values_mut().filter_map(WatchedScene::close).collect()
     }
 
     /// Forgets the scenes that have been without a frame for long, after their memories are written.
@@ -344,7 +331,7 @@ impl<M: Borrow<Ddl>> Session<M> {
         for (name, mut scene) in self.scenes.extract_if(.., is_idle) {
             notes.extend(scene.close());
             self.regions.remove(&name);
-            self.waiting.forget(&name);
+            self.waiting.forget(name.as_ref());
         }
         notes
     }
@@ -355,6 +342,25 @@ impl<M: Borrow<Ddl>> Session<M> {
             return Err(LiveError::TooManyPedestrians { limit: Self::MOST_PEDESTRIANS }.into());
         }
         Ok(())
+    }
+
+    /// A named scene whose memory cannot be used begins without memory.
+    fn begin_beside_others(
+        &mut self,
+        scene: Option<&SceneName>,
+        notes: &mut Vec<Note>,
+    ) -> Result<WatchedScene, DdlError> {
+        if self.scenes.len() >= Self::MOST_SCENES {
+            let minutes = self.idle_timeout.as_secs() / 60;
+            return Err(DdlError::TooManyScenes { limit: Self::MOST_SCENES, minutes });
+        }
+        match (self.begin_scene(scene), scene) {
+            (Err(error), Some(_)) => {
+                notes.push(Note::MemoryFailed(error.into()));
+                Ok(WatchedScene::new(self.unseen.clone()))
+            }
+            (begun, _) => begun,
+        }
     }
 
     fn begin_scene(&mut self, name: Option<&SceneName>) -> Result<WatchedScene, DdlError> {

@@ -109,8 +109,8 @@ impl WaitingWindows {
     }
 
     /// Forgets what was counted of a scene; its windows stay.
-    pub(crate) fn forget(&mut self, scene: &Option<SceneName>) {
-        self.dropped_of.remove(scene);
+    pub(crate) fn forget(&mut self, scene: Option<&SceneName>) {
+        self.dropped_of.remove(&scene.cloned());
     }
 
     /// Number of windows that wait.

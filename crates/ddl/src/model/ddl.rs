@@ -127,9 +127,11 @@ impl Ddl {
             // Noise vector k is future k, and a plan changes nothing.
             let forecasts = shaped::without_goals(&*self.network, self.config().training.seed, windows)?;
             let pairs = windows.iter().zip(forecasts);
-            let answers = pairs.map(|(window, forecast)| match request.is_joint() {
-                true => Ok(Answer::of_scene(joint::futures(window, forecast, None)?, Vec::new())),
-                false => Ok(forecast.into()),
+            let answers = pairs.map(|(window, forecast)| {
+                if !request.is_joint() {
+                    return Ok(forecast.into());
+                }
+                Ok(Answer::of_scene(joint::futures(window, forecast, None)?, Vec::new()))
             });
             return answers.collect();
         }
@@ -139,9 +141,11 @@ impl Ddl {
             return walked.map(|walked| Ok(Answer::of_each(walked.certified(request.certificates)?))).collect();
         }
         let walked = shaped::walked(&*self.network, windows, self.guided(windows, goals), StepRule::Bounded)?;
-        let answers = walked.map(|walked| match request.is_joint() {
-            true => walked.joint_answer(request.plan(), request.certificates),
-            false => Ok(Answer::of_each(walked.certified(request.certificates)?)),
+        let answers = walked.map(|walked| {
+            if request.is_joint() {
+                return walked.joint_answer(request.plan(), request.certificates);
+            }
+            Ok(Answer::of_each(walked.certified(request.certificates)?))
         });
         answers.collect()
     }

@@ -1,12 +1,6 @@
 //! Training that starts from another model: its record and its settings.
 
-use crate::error::DdlError;
-use crate::run::builtin_model::BuiltinModel;
 use crate::run::goal_recipe::GoalRecipe;
-use crate::run::training_data::fold_by_name;
-use crate::run::validation_part::ValidationPart;
-use ddl_core::Window;
-use ddl_data::{Convention, Dataset};
 use ddl_network::{TrainingConfig, Variant};
 use serde::{Deserialize, Serialize};
 
@@ -18,29 +12,6 @@ pub struct InitialModel {
     pub model: String,
     /// SHA-256 of the weights of both networks.
     pub sha256: String,
-}
-
-/// Number of pedestrian-windows below which training on own recordings starts from a built-in model.
-const FEW: usize = 10_000;
-
-/// The model that training on own recordings starts from, with the number of pedestrian-windows of the training, if
-/// there are few of them; `None` for random weights.
-///
-/// # Errors
-/// The fold or a recording of the validation part is not known.
-pub fn starting_model(
-    dataset: &Dataset,
-    fold: &str,
-    part: &ValidationPart,
-) -> Result<Option<(BuiltinModel, usize)>, DdlError> {
-    if dataset.convention() != Convention::Own {
-        return Ok(None);
-    }
-    let fold = fold_by_name(dataset, fold)?.with_validation_recordings(&part.recordings)?;
-    let rule = dataset.convention().headline_rule();
-    let windows = fold.training_split(rule, part.share.clamp(0.0, 1.0)).training;
-    let pedestrians: usize = windows.iter().map(Window::len).sum();
-    Ok((pedestrians > 0 && pedestrians < FEW).then(|| (BuiltinModel::default(), pedestrians)))
 }
 
 /// The training of a trained model's forecasting network on few more recordings: fewer steps with a smaller step size.

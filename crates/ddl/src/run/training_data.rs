@@ -1,35 +1,9 @@
-//! The recordings and windows of a training, and their digests.
+//! Digests of the recordings and windows of a training.
 
 use ddl_core::Window;
-use ddl_data::{Convention, DataError, Dataset, Fold, Recording, WindowRule};
+use ddl_data::Recording;
 use ddl_network::weights::in_hex;
 use sha2::{Digest as _, Sha256};
-
-/// Training uses every window of 20 steps of the convention.
-pub(crate) fn training_rule(convention: Convention) -> WindowRule {
-    match convention {
-        Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },
-        Convention::Own => WindowRule::Observed,
-        _ => WindowRule::Complete,
-    }
-}
-
-/// The fold of that name. For own recordings this includes the fold that leaves none out ([`Fold::NO_HELD_OUT`]).
-///
-/// # Errors
-/// When it is missing; the message lists the existing folds.
-pub fn fold_by_name<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
-    if dataset.convention() == Convention::Own && name == Fold::NO_HELD_OUT {
-        Ok(dataset.whole())
-    } else {
-        dataset.fold(name)
-    }
-}
-
-pub(crate) fn learned_from<'a>(fold: &'a Fold<'_>) -> impl Iterator<Item = &'a Recording> {
-    let learned = fold.training_recordings().iter();
-    learned.chain(fold.validation_recordings()).copied()
-}
 
 /// SHA-256 of a recording's frames, pedestrians and positions; its name does not matter.
 pub(crate) fn digest_of_recording(recording: &Recording) -> String {

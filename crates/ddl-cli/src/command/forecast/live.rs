@@ -133,7 +133,7 @@ impl WatchedStream {
     /// Refuses a memory of one place for a stream of several scenes, and one of several for a stream of one.
     fn ensure_memory_fits(&self, scene: Option<&SceneName>) -> anyhow::Result<()> {
         let memory = self.memory.as_ref().or(self.session.as_ref().map(Session::memory));
-        Ok(memory.map_or(Ok(()), |memory| memory.ensure_fits(scene)).context("--memory")?)
+        memory.map_or(Ok(()), |memory| memory.ensure_fits(scene)).context("--memory")
     }
 
     /// Number of windows that wait for an answer.
