@@ -39,7 +39,7 @@ pub fn check(forecasts: impl Fn(BuiltinModel) -> Vec<Golden>) {
 }
 
 /// Ten pedestrians: side by side, head on, turning, standing, running, slowing down, noisy, far from all others.
-fn window() -> Window {
+pub fn window() -> Window {
     let mut tracks: BTreeMap<i64, Vec<Position>> = BTreeMap::new();
     for row in include_str!("../golden/tracks.csv").lines().skip(1) {
         let number = |field: &str| field.parse::<f64>().expect("a number");
