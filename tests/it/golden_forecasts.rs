@@ -1,5 +1,5 @@
-//! Forecasts of the built-in models agree with those of libtorch (`it_torch/golden_forecasts.rs` updates them), and their
-//! joint futures and risks with stored ones (with `DDL_WRITE_GOLDEN=1` they are stored anew).
+//! Forecasts of the built-in models agree with those of libtorch (`it_torch/golden_forecasts.rs` updates them), and
+//! their joint futures and risks with stored ones (with `DDL_WRITE_GOLDEN=1` they are stored anew).
 
 use ddl::data::Position;
 use ddl::scene::{Plan, PlanPoint};

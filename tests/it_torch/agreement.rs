@@ -1,7 +1,7 @@
 //! The kernels against libtorch: forecasts of the built-in models on their test scenes.
 
 use ddl::data::{Convention, Window, WindowRule};
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, ModelSource, Remembering};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster, ModelSource, Remembering};
 use ddl_core::distance;
 use ddl_tests::recordings;
 use std::io::Write as _;
@@ -67,7 +67,7 @@ fn built_in_models_agree_with_libtorch_on_their_test_scenes() {
         let remembering = goals.remembering(&some, &dataset, Remembering::Online);
         let mut difference = Difference::default();
         for window in some.iter().chain(&remembering.unwrap()) {
-            let [a, b] = [&kernels, &libtorch].map(|model| model.forecast(window).unwrap());
+            let [a, b] = [&kernels, &libtorch].map(|model| Forecaster::forecast(model, window).unwrap());
             difference.add(&a, &b);
         }
         writeln!(std::io::stdout(), "{name}: {difference:?}").unwrap();

@@ -35,8 +35,8 @@ pub struct PlaceMemory {
 /// Why a given memory is no longer used: it is of another place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the memory is of another place, or the camera was moved: only {alike} of {tried} pedestrians moved like an earlier \
-     pedestrian in the memory"
+    "the memory is of another place, or the camera was moved: only {alike} of {tried} pedestrians moved like an \
+     earlier pedestrian in the memory"
 )]
 pub struct Refusal {
     /// Number of pedestrians that it was tested on.

@@ -47,8 +47,8 @@ fn plans_of(plans: &[PyReadonlyArray2<'_, f64>]) -> PyResult<Vec<Plan>> {
 
 #[pymethods]
 impl FuturesHandle {
-    /// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step
-    /// and until its end `(p, 12)`.
+    /// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each
+    /// step and until its end `(p, 12)`.
     fn risks<'py>(
         &self,
         py: Python<'py>,

@@ -117,8 +117,8 @@ fn memory_of_scenes(path: &Path, is_folder: bool) -> String {
         format!("{path} is a folder, and the frames name no scenes; name a file, or name the scenes")
     } else {
         format!(
-            "{path} is a file of one place, and the frames name scenes; name a folder that is there, for a file of each \
-             scene"
+            "{path} is a file of one place, and the frames name scenes; name a folder that is there, for a file of \
+             each scene"
         )
     }
 }

@@ -169,6 +169,13 @@ pub(super) fn number(text: &str, name: &str) -> Result<(), Problem> {
     text.parse::<f64>().map(drop).map_err(|_| value(name, "a number", text))
 }
 
+/// Whether two values are the same word or the same number.
+#[expect(clippy::float_cmp, reason = "1 and 1.0 are the same number")]
+pub(super) fn are_alike(found: &str, asked: &str) -> bool {
+    let numbers = found.parse::<f64>().ok().zip(asked.parse::<f64>().ok());
+    found.eq_ignore_ascii_case(asked) || numbers.is_some_and(|(found, asked)| found == asked)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -30,8 +30,9 @@ const MOST_FAULTS: usize = 5;
 /// Number of unknown columns that a message names.
 const NAMED: usize = 5;
 const LIFETIME: &str = "the classes of the tracks are in another file (tracksMeta): vehicles are read too";
-const WIDE: &str = "each pedestrian has columns of its own; write a row for each frame and pedestrian: python -c \"import \
-    pandas; pandas.wide_to_long(pandas.read_csv('FILE'), ['x', 'y'], 'frame', 'pedestrian').dropna().to_csv('rows.csv')\"";
+const WIDE: &str = "each pedestrian has columns of its own; write a row for each frame and pedestrian: python -c \
+    \"import pandas; pandas.wide_to_long(pandas.read_csv('FILE'), ['x', 'y'], 'frame', \
+    'pedestrian').dropna().to_csv('rows.csv')\"";
 const RULE: &str = "the header must name the columns frame (or time), pedestrian, x and y, each once";
 
 /// What the first column counts.
@@ -127,6 +128,8 @@ impl ColumnRoles {
         let of_row = [&[layout.frame, layout.pedestrian], layout.position.columns()].concat();
         let is_read = |index: usize| of_row.contains(&index) || layout.class.is_some_and(|(class, _)| class == index);
         let has_unit = layout.note.is_some() && layout.per_metre.is_some();
+        let is_as_usual = choice.unit.is_none() && choice.keep.is_none();
+        let asked = (!is_as_usual).then(|| format!("read as {}, with the unit and the rows asked for", layout.format));
         Ok(Self {
             time: match names[0] {
                 "time" => TimeColumn::Known(Some(TimeUnit::Seconds)),
@@ -145,7 +148,7 @@ impl ColumnRoles {
             constants: layout.constant.into_iter().collect(),
             unread: Vec::new(),
             numbers: (0..names.len()).filter(|&index| !is_read(index)).collect(),
-            remarks: Vec::new(),
+            remarks: asked.into_iter().collect(),
         })
     }
 

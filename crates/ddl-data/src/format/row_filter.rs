@@ -7,9 +7,11 @@ use ddl_core::Setting;
 
 use crate::class::{PEOPLE, has_word_of, is_one_of, is_vehicle, name_words};
 use crate::format::fault::Fault;
-use crate::format::header::{ColumnRoles, first_of};
+use crate::format::field::are_alike;
+use crate::format::header::first_of;
 use crate::format::problem::value;
 use crate::format::quoted::quoted;
+use crate::format::track_columns::TrackColumns;
 
 /// Words beside those of people that do not change what they are.
 const OF_PEOPLE: &str = "type class adult child moving standing sitting walking";
@@ -36,16 +38,8 @@ impl RowFilter {
     ///
     /// # Errors
     /// A field that marks the row and holds no mark.
-    pub(super) fn counts(
-        &mut self,
-        roles: &ColumnRoles,
-        names: &[String],
-        fields: &[Cow<'_, str>],
-    ) -> Result<bool, Fault> {
-        let why = match marked(roles, names, fields)? {
-            None => self.reason(roles, names, fields),
-            why => why,
-        };
+    pub(super) fn counts(&mut self, columns: &TrackColumns, fields: &[Cow<'_, str>]) -> Result<bool, Fault> {
+        let why = marked(columns, fields)?.or_else(|| self.reason(columns, fields));
         Ok(why.map(|why| self.leave_out(why)).is_none())
     }
 
@@ -58,7 +52,8 @@ impl RowFilter {
     }
 
     /// Why a row without a mark does not count. A class without a known meaning is kept.
-    fn reason(&mut self, roles: &ColumnRoles, names: &[String], fields: &[Cow<'_, str>]) -> Option<String> {
+    fn reason(&mut self, columns: &TrackColumns, fields: &[Cow<'_, str>]) -> Option<String> {
+        let TrackColumns { roles, names, .. } = columns;
         if let Some((index, value)) = &roles.keep
             && !are_alike(&fields[*index], value)
         {
@@ -104,16 +99,17 @@ impl RowFilter {
 }
 
 /// Why the marks of a row leave it out.
-fn marked(roles: &ColumnRoles, names: &[String], fields: &[Cow<'_, str>]) -> Result<Option<String>, Fault> {
-    for &(index, left_out) in roles.marks.iter().filter(|(index, _)| !fields[*index].is_empty()) {
-        let name = || quoted(&names[index]);
+fn marked(columns: &TrackColumns, fields: &[Cow<'_, str>]) -> Result<Option<String>, Fault> {
+    for &(index, left_out) in columns.roles.marks.iter().filter(|(index, _)| !fields[*index].is_empty()) {
+        let name = &columns.names[index];
         let is_marked = is_marked(&fields[index]).ok_or_else(|| {
-            let keep = Setting::Keep.to(format!("{}=VALUE", name()));
-            let problem = value(&name(), "0, 1, yes or no", &fields[index]);
+            let name = quoted(name);
+            let keep = Setting::Keep.to(format!("{name}=VALUE"));
+            let problem = value(&name, "0, 1, yes or no", &fields[index]);
             Fault::at(index, problem.and(format!("; {keep} chooses rows by it")))
         })?;
         if is_marked == left_out {
-            return Ok(Some(if is_marked { "marked lost".to_owned() } else { format!("with {} 0", names[index]) }));
+            return Ok(Some(if is_marked { "marked lost".to_owned() } else { format!("with {name} 0") }));
         }
     }
     Ok(None)
@@ -132,11 +128,4 @@ fn is_marked(mark: &str) -> Option<bool> {
         "no" | "n" | "false" | "f" => Some(false),
         _ => number.map(|mark| mark != 0.0),
     }
-}
-
-/// Whether two values are the same word or the same number.
-#[expect(clippy::float_cmp, reason = "1 and 1.0 are the same number")]
-pub(super) fn are_alike(found: &str, asked: &str) -> bool {
-    let numbers = found.parse::<f64>().ok().zip(asked.parse::<f64>().ok());
-    found.eq_ignore_ascii_case(asked) || numbers.is_some_and(|(found, asked)| found == asked)
 }

@@ -15,7 +15,7 @@ pub(super) struct RowReader {
     pub(super) columns: TrackColumns,
     /// `None` until a row shows it.
     time: Option<TimeReading>,
-    filter: RowFilter,
+    pub(super) filter: RowFilter,
     /// Columns whose value stays the same, and their values.
     constants: Vec<(usize, Option<String>)>,
     /// The columns that are not read, in the order of messages; `None` before the first row.
@@ -113,7 +113,7 @@ impl RowReader {
     fn row(&mut self, fields: &[Cow<'_, str>], line: usize, time: &mut TimeReading) -> Result<Option<TrackRow>, Fault> {
         let columns = &self.columns;
         columns.check_count(fields)?;
-        if !self.filter.counts(&columns.roles, &columns.names, fields)? {
+        if !self.filter.counts(columns, fields)? {
             return Ok(None);
         }
         let frame = columns.frame(fields, time)?;
@@ -160,11 +160,6 @@ impl RowReader {
 
     fn unread(&self) -> &[usize] {
         self.unread.as_deref().unwrap_or(&self.columns.roles.unread)
-    }
-
-    /// The rows that were left out.
-    pub(super) fn left_out(&self) -> Option<String> {
-        self.filter.left_out()
     }
 
     /// What else may be done about two rows of a pedestrian in one frame: they may be of several recordings.

@@ -95,7 +95,7 @@ pub(super) fn parse(text: &str, format: Format, choice: &ColumnChoice) -> Result
     let ends = text.bytes().filter(|&byte| byte == end as u8).count();
     let most = (ends + 1).min(text.len() / SHORTEST_ROW).min(MOST_RESERVED);
     let (reader, rows) = RowReader::of_file(columns, first.into_iter().chain(lines), most).map_err(of_titles)?;
-    if let (true, Some(left_out)) = (rows.is_empty(), reader.left_out()) {
+    if let (true, Some(left_out)) = (rows.is_empty(), reader.filter.left_out()) {
         return Err(FilePlace::line(first_line).wrong(format!("no row is left; {left_out} ({})", Setting::Keep)));
     }
     Ok(TextFile { rows, notes: reader.notes_of_file(), rate, reader: Some(reader) })

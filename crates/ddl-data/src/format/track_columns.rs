@@ -9,12 +9,11 @@ use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{LengthUnit, is_of_time};
 use crate::format::comments::{is_comment, names_in_comments};
 use crate::format::fault::{Fault, FormatError};
-use crate::format::field::{self, PedestrianField};
+use crate::format::field::{self, PedestrianField, are_alike};
 use crate::format::header::{ColumnRoles, TimeColumn, first_of, is_camera};
 use crate::format::kind::Format;
 use crate::format::layouts::FileLayout;
 use crate::format::quoted::quoted;
-use crate::format::row_filter::are_alike;
 use crate::format::separator::Separator;
 use crate::scene_name::SceneName;
 
@@ -99,21 +98,17 @@ impl TrackColumns {
     /// The columns of a table with these names.
     fn named(names: Vec<String>, separator: Separator, choice: &ColumnChoice) -> Result<Self, Fault> {
         let roles = ColumnRoles::of_names(&names.iter().map(String::as_str).collect::<Vec<_>>(), choice)?;
-        let unnamed = names.iter().rev().take_while(|name| name.is_empty()).count();
-        let (format, needed, is_mapped) = (Format::Table, names.len() - unnamed, choice.is_mapped);
-        Ok(Self { format, separator, names, needed, roles, is_mapped, note: None })
+        let needed = names.len() - names.iter().rev().take_while(|name| name.is_empty()).count();
+        let is_mapped = choice.is_mapped;
+        Ok(Self { format: Format::Table, separator, names, needed, roles, is_mapped, note: None })
     }
 
     fn laid_out(layout: &FileLayout, separator: Separator, choice: &ColumnChoice) -> Result<Self, Fault> {
-        let mut roles = ColumnRoles::of_layout(layout, choice)?;
-        let is_as_usual = choice.unit.is_none() && choice.keep.is_none();
-        if !is_as_usual {
-            roles.remarks.push(format!("read as {}, with the unit and the rows asked for", layout.format));
-        }
+        let roles = ColumnRoles::of_layout(layout, choice)?;
         let names: Vec<String> = layout.names.split(' ').map(str::to_owned).collect();
-        let (needed, is_mapped) = (names.len(), choice.is_mapped);
-        let note = layout.note.filter(|_| is_as_usual);
-        Ok(Self { format: layout.format, separator, names, needed, roles, is_mapped, note })
+        let (needed, is_mapped, format) = (names.len(), choice.is_mapped, layout.format);
+        let note = layout.note.filter(|_| roles.remarks.is_empty());
+        Ok(Self { format, separator, names, needed, roles, is_mapped, note })
     }
 
     /// Whether the columns are those of a header.

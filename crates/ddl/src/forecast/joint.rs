@@ -53,8 +53,8 @@ impl Walked<'_> {
         self.window.named(given?.ego.as_ref()?)
     }
 
-    /// The joint futures of these pedestrians, as an answer; the ego, if it is in the window, follows the plan in all of
-    /// them.
+    /// The joint futures of these pedestrians, as an answer; the ego, if it is in the window, follows the plan in all
+    /// of them.
     pub(crate) fn joint_answer(self, given: Option<&GivenPlan>, certificates: bool) -> Result<Answer, ForecastError> {
         let window = self.window;
         let joint = self.joint(given)?;

@@ -67,7 +67,7 @@ impl GoalModel {
 /// Adds to each pedestrian of the windows at most `count` earlier pedestrians. They come from the recordings that
 /// `of_place` gives for the name of the window's recording and, with a playback, from the window's own recording before
 /// its last observed frame.
-fn remembering<'a>(
+pub(crate) fn remembering<'a>(
     recordings: &[&'a Recording],
     windows: &[Window],
     of_place: impl Fn(&str) -> Vec<&'a Recording>,

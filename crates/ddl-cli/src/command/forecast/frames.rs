@@ -50,7 +50,8 @@ impl StatedTime {
         if let Some(rate) = self.rows_a_second {
             let clock = Clock::with_frame_time(1.0 / (rate * apart as f64)).with_context(|| {
                 format!(
-                    "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} apart"
+                    "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} \
+                     apart"
                 )
             })?;
             return Ok(Some((clock, Some(format!("from the fps of the scenes, {rate}")))));
@@ -60,8 +61,8 @@ impl StatedTime {
         }
         if apart > LONGEST_STEP {
             bail!(
-                "standard input: the first two frames are {apart} apart; give the number of frames in 0.4 s with --fps or \
-                 --frame-step"
+                "standard input: the first two frames are {apart} apart; give the number of frames in 0.4 s with --fps \
+                 or --frame-step"
             );
         }
         let clock = Clock::with_frame_step(apart)?;
