@@ -5,7 +5,11 @@ use crate::kernel::feed_forward::dropout::reference;
 use crate::kernel::feed_forward::{FeedForward, Gradients};
 use crate::kernel::tests::numbers::Numbers;
 
-pub(super) struct Case {
+/// The relative error of one rounding.
+pub(super) const UNIT: f64 = 1.0 / 16_777_216.0;
+
+/// A layer with its input and the gradient of its output.
+pub(super) struct LayerCase {
     pub(super) width: usize,
     pub(super) hidden: usize,
     pub(super) w1: Vec<f32>,
@@ -34,7 +38,7 @@ impl Sum {
     }
 }
 
-impl Case {
+impl LayerCase {
     pub(super) fn new(width: usize, hidden: usize, rows: usize, dropout: Option<Dropout>) -> Self {
         let mut numbers = Numbers::seeded((width * 1_000_003 + hidden * 1009 + rows) as u64);
         let (inner, outer) = (1.0 / (width as f32).sqrt(), 1.0 / (hidden as f32).sqrt());
@@ -102,7 +106,7 @@ impl Case {
                     back += term;
                     back_size += term.abs();
                 }
-                let in_doubt = sum.abs() <= (width + 2) as f64 * super::UNIT * size;
+                let in_doubt = sum.abs() <= (width + 2) as f64 * UNIT * size;
                 let active = if sum > 0.0 { factor } else { 0.0 };
                 let (sum, size) = (active * sum, factor * size);
                 let (back, back_size) = (active * back, factor * back_size);
