@@ -1,7 +1,6 @@
 //! The learned tensors, by name and in order.
 
 use crate::StarError;
-use crate::model::shared_weights::SharedWeights;
 #[cfg(test)]
 use ddl_network::weights::TensorLayout;
 use ddl_network::weights::{Layout, Weights};
@@ -81,11 +80,6 @@ impl Parameters {
         let numbers = Tensor::f_from_slice(weights.numbers())?;
         self.flat.shallow_clone().f_copy_(&numbers)?;
         Ok(())
-    }
-
-    /// The gradient of a loss computed by libtorch's operations only, as one vector like `flat`.
-    pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
-        SharedWeights::default().gradient(loss, self)
     }
 
     /// The gradients of a loss with respect to the learned tensors, and to tensors of its computation; `None` for those

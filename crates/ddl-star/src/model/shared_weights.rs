@@ -104,6 +104,13 @@ impl SharedWeights {
     }
 }
 
+impl Parameters {
+    /// The gradient of a loss computed by libtorch's operations only, as one vector like `flat`.
+    pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, TchError> {
+        SharedWeights::default().gradient(loss, self)
+    }
+}
+
 /// The gradients of weights and biases, by their index, from those of the uses' outputs.
 fn shares(uses: &[Use], of_outputs: Vec<Option<Tensor>>) -> Result<BTreeMap<usize, Tensor>, TchError> {
     let mut by_weight: BTreeMap<usize, UsedRows> = BTreeMap::new();
