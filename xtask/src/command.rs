@@ -5,6 +5,7 @@ mod c;
 mod ci;
 mod data;
 mod docs;
+mod hook;
 mod nightly;
 mod python;
 mod release;
@@ -31,6 +32,8 @@ pub(crate) enum Command {
     Test(test::Arguments),
     /// Check format, spelling, links, tidy rules and lints, without libtorch: under a minute once it has been built
     Check,
+    /// Check format, columns and spelling of what is staged, as git does before a commit
+    Hook,
     /// Run all checks that must pass before a change is merged
     Ci,
     /// Build the wheel of the Python package and test it in a virtual environment
@@ -55,6 +58,7 @@ impl Command {
             Self::Benchmark(arguments) => arguments.run(workspace),
             Self::Test(arguments) => arguments.run(workspace),
             Self::Check => ci::check(workspace),
+            Self::Hook => hook::run(workspace),
             Self::Ci => ci::run(workspace),
             Self::Python(arguments) => arguments.run(workspace),
             Self::Release(arguments) => arguments.run(workspace),

@@ -49,5 +49,7 @@ pub(crate) fn find_on_path(name: &OsStr) -> Option<PathBuf> {
         return Path::new(name).is_file().then(|| name.into());
     }
     let path = env::var_os("PATH")?;
-    env::split_paths(&path).map(|folder| folder.join(name)).find(|program| program.is_file())
+    let mut file = name.to_owned();
+    file.push(env::consts::EXE_SUFFIX);
+    env::split_paths(&path).map(|folder| folder.join(&file)).find(|program| program.is_file())
 }

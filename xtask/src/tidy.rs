@@ -78,7 +78,7 @@ fn is_page(file: &Path) -> bool {
     file.starts_with("docs") && file.extension().is_some_and(|extension| extension == "md")
 }
 
-fn text_faults(file: &Path, text: &str) -> Vec<String> {
+pub(crate) fn text_faults(file: &Path, text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let mut names = file.iter().chain(file.file_stem()).filter_map(|name| name.to_str());
     if let Some(name) = names.find(|name| EMPTY_NAMES.contains(name)) {

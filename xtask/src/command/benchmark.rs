@@ -1,7 +1,5 @@
 //! `cargo xtask benchmark`: libtorch, the recordings and the program, then `ddl benchmark`.
 
-use std::os::unix::process::CommandExt as _;
-
 use anyhow::{Context, Result};
 use clap::Args;
 
@@ -26,7 +24,10 @@ impl Arguments {
         let mut cargo =
             workspace.cargo("run --release --package ddl-cli --bin ddl --features torch -- benchmark".split(' '));
         cargo.args(self.options);
-        Err(cargo.exec()).context("cargo cannot be started")
+        #[cfg(unix)]
+        return Err(std::os::unix::process::CommandExt::exec(&mut cargo)).context("cargo cannot be started");
+        #[cfg(not(unix))]
+        run(&mut cargo).context("the benchmark stopped (above)")
     }
 }
 

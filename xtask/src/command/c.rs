@@ -65,7 +65,11 @@ pub(super) fn install(workspace: &Workspace, profile: &str, prefix: &Path) -> Re
     put(&built.join("libddl_c.a"), &lib.join("libddl.a"))?;
     for (link, target) in [(&soname, &file), (&"libddl.so".to_owned(), &soname)] {
         let _ = fs::remove_file(lib.join(link));
-        std::os::unix::fs::symlink(target, lib.join(link)).context("the name of the library")?;
+        #[cfg(unix)]
+        let named = std::os::unix::fs::symlink(target, lib.join(link));
+        #[cfg(not(unix))]
+        let named = fs::copy(lib.join(target), lib.join(link)).map(drop);
+        named.context("the name of the library")?;
     }
     for (template, folder) in
         [("ddl.pc", "pkgconfig"), ("ddl-config.cmake", "cmake/ddl"), ("ddl-config-version.cmake", "cmake/ddl")]

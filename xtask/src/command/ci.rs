@@ -51,14 +51,17 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
     lints(workspace, "ddl-cli/torch,ddl-tests/torch,ddl-cli/doc-only")
 }
 
-/// Format, spelling, rules of this repository, and links between its files.
+/// Format, spelling, rules of this repository, workflows, and links between its files.
 fn text(workspace: &Workspace) -> Result<()> {
     run_command(&mut workspace.cargo(["fmt", "--all", "--check"])).context("run `cargo fmt --all`")?;
     tidy::run(workspace)?;
     let tools = Tools::ensure(workspace)?;
-    for [program, arguments] in
-        [["ruff", "format --check --quiet"], ["ruff", "check --quiet"], ["typos", "--format brief"]]
-    {
+    for [program, arguments] in [
+        ["ruff", "format --check --quiet"],
+        ["ruff", "check --quiet"],
+        ["typos", "--format brief"],
+        ["zizmor", "--offline --quiet --strict-collection .github"],
+    ] {
         run_command(tools.program(workspace, program).args(arguments.split(' ')))?;
     }
     let files = workspace.files()?;

@@ -1,10 +1,11 @@
-//! `cargo xtask setup`: libtorch, and cargo's configuration for it.
+//! `cargo xtask setup`: libtorch, cargo's configuration for it, and the hook of git.
 
 use std::time::Instant;
 
 use anyhow::Result;
 use clap::Args;
 
+use super::hook;
 use crate::libtorch::{self, Request};
 use crate::workspace::Workspace;
 
@@ -37,6 +38,7 @@ impl Arguments {
         );
         let written = if ready.reconfigured { "written" } else { "up to date" };
         println!("cargo configuration: .cargo/config.generated.toml {written}");
+        println!("{}", hook::install(workspace)?);
         Ok(())
     }
 }
