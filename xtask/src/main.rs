@@ -22,7 +22,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use crate::command::Command;
+use crate::command::XtaskCommand;
 use crate::workspace::Workspace;
 
 /// Set-up, recordings, benchmark, checks and tests of the DDL workspace.
@@ -30,7 +30,7 @@ use crate::workspace::Workspace;
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version, max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
-    command: Command,
+    command: XtaskCommand,
 }
 
 fn main() -> ExitCode {

@@ -9,13 +9,13 @@ use crate::recordings::bring_in_for;
 use crate::workspace::{Workspace, remove_folder};
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct BenchmarkArguments {
     /// Options of `ddl benchmark`, such as `--profile smoke`; paths in them are relative to the checkout
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     options: Vec<String>,
 }
 
-impl Arguments {
+impl BenchmarkArguments {
     /// Replaces this process by the program, which then receives Ctrl-C and determines the exit code.
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let data = value(&self.options, "--data").map(|folder| workspace.path(folder));

@@ -14,12 +14,12 @@ use crate::tidy;
 use crate::tools::Tools;
 use crate::workspace::Workspace;
 
-type Check = (&'static str, fn(&Workspace) -> Result<()>);
+type NamedCheck = (&'static str, fn(&Workspace) -> Result<()>);
 
 /// The features of everything that is built here.
 const FEATURES: &str = "ddl-cli/torch,ddl-tests/torch";
 
-const CHECKS: [Check; 11] = [
+const CHECKS: [NamedCheck; 11] = [
     ("text", text),
     ("libtorch, recordings, browser, Python packages", bring_all_in),
     ("dependencies and packages", dependencies),
@@ -31,7 +31,7 @@ const CHECKS: [Check; 11] = [
     ("Python package", python::check),
     ("library for C and C++", c::check),
     // The tests are last, so that their results are at the end of the log.
-    ("tests", |workspace| test::Arguments::default().run(workspace)),
+    ("tests", |workspace| test::TestArguments::default().run(workspace)),
 ];
 
 pub(super) fn run(workspace: &Workspace) -> Result<()> {

@@ -9,7 +9,7 @@ use crate::recordings::{Manifest, RECORDED, SIMULATED};
 use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct DataArguments {
     /// Action on the recordings
     action: Action,
     /// Only this convention: star or social-gan
@@ -30,7 +30,7 @@ enum Action {
     Where,
 }
 
-impl Arguments {
+impl DataArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let (asked, data) = (self.convention.as_deref(), self.data.as_deref());
         if asked == Some(SIMULATED) {

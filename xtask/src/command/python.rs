@@ -22,7 +22,7 @@ const ENVIRONMENT: &str = "target/python/environment";
 const LARGEST: u64 = 14_000_000;
 
 #[derive(Debug, Default, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct PythonArguments {
     /// Only build the wheel
     #[arg(long)]
     no_tests: bool,
@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     rest: Vec<String>,
 }
 
-impl Arguments {
+impl PythonArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         make_environment(workspace)?;
         let wheel = build(workspace)?;

@@ -27,14 +27,14 @@ const OLDEST_GLIBC: &str = "2.17";
 const LISTED: [&str; 4] = ["ddl-cli", "ddl-python", "ddl-c", "ddl-web"];
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct ReleaseArguments {
     /// Build and check everything, and publish nothing
     #[arg(long)]
     pub(super) dry_run: bool,
 }
 
-type Step = (&'static str, fn(&Workspace, &Path) -> Result<()>);
-const STEPS: [Step; 7] = [
+type ReleaseStep = (&'static str, fn(&Workspace, &Path) -> Result<()>);
+const STEPS: [ReleaseStep; 7] = [
     ("crates", crates),
     ("wheels", wheels),
     ("npm package", npm_package),
@@ -44,7 +44,7 @@ const STEPS: [Step; 7] = [
     ("checksums", checksums),
 ];
 
-impl Arguments {
+impl ReleaseArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let notes = notes(&fs::read_to_string(workspace.path("CHANGELOG.md"))?, self.dry_run)?;
         let status = read(workspace.program("git").args(["status", "--porcelain"]))?;

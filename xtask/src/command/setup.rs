@@ -6,20 +6,20 @@ use anyhow::Result;
 use clap::Args;
 
 use super::hook;
-use crate::libtorch::{self, Request};
+use crate::libtorch::{self, LibtorchRequest};
 use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct SetupArguments {
     #[command(flatten)]
-    request: Request,
+    request: LibtorchRequest,
     /// Print shell lines that set libtorch's variables, for tools that do not use cargo's configuration:
     /// `eval "$(cargo xtask setup --env)"`
     #[arg(long)]
     env: bool,
 }
 
-impl Arguments {
+impl SetupArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let start = Instant::now();
         let ready = libtorch::ensure(workspace, &self.request)?;

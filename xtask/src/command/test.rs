@@ -18,7 +18,7 @@ const TORCH: &str = "--workspace --features ddl-cli/torch,ddl-tests/torch";
 const TORCH_TESTS: &str = "--test it_torch";
 
 #[derive(Debug, Default, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct TestArguments {
     /// Only tests that need no libtorch; nothing is set up
     #[arg(long)]
     no_torch: bool,
@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     rest: Vec<String>,
 }
 
-impl Arguments {
+impl TestArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         if !self.no_torch {
             set_up(workspace)?;

@@ -23,13 +23,13 @@ const BUILT: &str = "target/wasm";
 const PACKAGES: [&str; 2] = ["typescript@5.9.3", "@types/node@22.20.5"];
 
 #[derive(Debug, Default, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct WebArguments {
     /// Also test both: the page in a browser, the package in node
     #[arg(long)]
     test: bool,
 }
 
-impl Arguments {
+impl WebArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         build(workspace)?;
         if self.test {

@@ -35,7 +35,7 @@ impl SeenKey {
 
 /// The visibility in some of the frames of [`Scenes`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frames<'a> {
+pub(crate) struct SceneFrames<'a> {
     scenes: &'a Scenes,
     first: usize,
     count: usize,
@@ -161,13 +161,13 @@ impl Scenes {
     ///
     /// # Panics
     /// If the range is empty or a frame does not exist.
-    pub(crate) fn during(&self, frames: Range<usize>) -> Frames<'_> {
+    pub(crate) fn during(&self, frames: Range<usize>) -> SceneFrames<'_> {
         assert!(frames.start < frames.end && frames.end <= self.frames, "frames {frames:?} of {}", self.frames);
-        Frames { scenes: self, first: frames.start, count: frames.len() }
+        SceneFrames { scenes: self, first: frames.start, count: frames.len() }
     }
 
     #[cfg(test)]
-    pub(super) fn throughout(&self) -> Frames<'_> {
+    pub(super) fn throughout(&self) -> SceneFrames<'_> {
         self.during(0..self.frames)
     }
 }
@@ -181,7 +181,7 @@ fn check(seen: &[u32], query: usize, size: usize) {
     assert!(sees_itself, "every pedestrian sees itself");
 }
 
-impl<'a> Frames<'a> {
+impl<'a> SceneFrames<'a> {
     pub(super) fn scenes(self) -> &'a Scenes {
         self.scenes
     }
@@ -236,7 +236,7 @@ mod tests {
         let scenes = Scenes::new(&[1, 3], lists(&[1, 3], &both));
         assert_eq!((scenes.pedestrians(), scenes.frames()), (4, 2));
         assert_eq!(scenes.ranges(), [0..1, 1..4]);
-        let codes_of = |frames: Frames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
+        let codes_of = |frames: SceneFrames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
             let scenes = frames.of_entry(entry);
             let twos = scenes.flat_map(|scene| (0..scene.ends.len()).map(move |i| scene.of(i)));
             let codes = twos.map(|seen| seen.iter().map(|seen| (seen.key(), seen.code())));

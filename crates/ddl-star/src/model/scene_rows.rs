@@ -5,7 +5,7 @@ use tch::{Device, Kind, Tensor};
 
 /// The rows of S scenes, each padded to the length L of the largest one.
 #[derive(Debug)]
-pub(crate) struct SceneRows {
+pub(crate) struct TensorSceneRows {
     scenes: i64,
     length: i64,
     /// `[S * L]`, the pedestrians of each scene, padded with its first pedestrian.
@@ -16,7 +16,7 @@ pub(crate) struct SceneRows {
     shares: Tensor,
 }
 
-impl SceneRows {
+impl TensorSceneRows {
     pub(crate) fn new(scenes: &[Range<usize>], device: Device, kind: Kind) -> Self {
         let length = scenes.iter().map(Range::len).max().unwrap_or(0);
         let (mut pedestrians, mut shares, mut places) = (Vec::new(), Vec::new(), Vec::new());

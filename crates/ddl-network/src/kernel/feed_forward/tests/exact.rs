@@ -2,8 +2,8 @@
 
 use crate::kernel::Dropout;
 use crate::kernel::feed_forward::dropout::reference;
-use crate::kernel::feed_forward::{FeedForward, Gradients};
-use crate::kernel::tests::numbers::Numbers;
+use crate::kernel::feed_forward::{FeedForward, LayerGradients};
+use crate::kernel::tests::numbers::SeededNumbers;
 
 /// The relative error of one rounding.
 pub(super) const UNIT: f64 = 1.0 / 16_777_216.0;
@@ -40,7 +40,7 @@ impl Sum {
 
 impl LayerCase {
     pub(super) fn new(width: usize, hidden: usize, rows: usize, dropout: Option<Dropout>) -> Self {
-        let mut numbers = Numbers::seeded((width * 1_000_003 + hidden * 1009 + rows) as u64);
+        let mut numbers = SeededNumbers::seeded((width * 1_000_003 + hidden * 1009 + rows) as u64);
         let (inner, outer) = (1.0 / (width as f32).sqrt(), 1.0 / (hidden as f32).sqrt());
         Self {
             width,
@@ -65,10 +65,10 @@ impl LayerCase {
         layer
     }
 
-    pub(super) fn run(&self, layer: &FeedForward) -> (Vec<f32>, Vec<f32>, Gradients) {
+    pub(super) fn run(&self, layer: &FeedForward) -> (Vec<f32>, Vec<f32>, LayerGradients) {
         // The passes overwrite both.
         let [mut y, mut gx] = [vec![f32::NAN; self.x.len()], vec![f32::NAN; self.x.len()]];
-        let mut grads = Gradients::zeros(self.width, self.hidden);
+        let mut grads = LayerGradients::zeros(self.width, self.hidden);
         layer.forward(&self.x, self.dropout, &mut y);
         layer.backward(&self.x, &self.gy, self.dropout, &mut gx, &mut grads);
         (y, gx, grads)
