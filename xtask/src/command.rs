@@ -13,11 +13,10 @@ mod setup;
 mod test;
 mod web;
 
-use anyhow::Result;
-use clap::Subcommand;
-
 use crate::libtorch::{self, LibtorchRequest};
 use crate::workspace::Workspace;
+use anyhow::Result;
+use clap::Subcommand;
 
 /// The commands of `cargo xtask`.
 #[derive(Debug, Subcommand)]

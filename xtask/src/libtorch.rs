@@ -5,16 +5,14 @@ mod config;
 mod fetch;
 mod locate;
 
-use std::env;
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result, bail};
-use clap::Args;
-
 use crate::cache;
 use crate::process::find_on_path;
 use crate::workspace::{Workspace, absolute};
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use std::env;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 /// Version of libtorch that the binding in `Cargo.lock` requires.
 pub(crate) const VERSION: &str = "2.11.0";

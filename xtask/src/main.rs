@@ -18,12 +18,10 @@ mod tidy;
 mod tools;
 mod workspace;
 
-use std::process::ExitCode;
-
-use clap::Parser;
-
 use crate::command::XtaskCommand;
 use crate::workspace::Workspace;
+use clap::Parser;
+use std::process::ExitCode;
 
 /// Set-up, recordings, benchmark, checks and tests of the DDL workspace.
 #[derive(Debug, Parser)]

@@ -1,26 +1,25 @@
 //! Programs that this one starts.
 
+use anyhow::{Context, Result, bail, ensure};
 use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result, bail, ensure};
-
 /// Prints the command and runs it to its end. A failure is an error.
 pub(crate) fn run(command: &mut Command) -> Result<()> {
     let line = shown(command);
     eprintln!("$ {line}");
-    let status = command.stdin(Stdio::null()).status();
-    let status = status.with_context(|| format!("{} cannot be started", name(command)))?;
+    let status =
+        command.stdin(Stdio::null()).status().with_context(|| format!("{} cannot be started", name(command)))?;
     ensure!(status.success(), "`{line}` failed: {status}");
     Ok(())
 }
 
 /// Runs a command silently and returns what it prints. The error is the last line of its standard error.
 pub(crate) fn read(command: &mut Command) -> Result<String> {
-    let output = command.stdin(Stdio::null()).output();
-    let output = output.with_context(|| format!("{} cannot be started", name(command)))?;
+    let output =
+        command.stdin(Stdio::null()).output().with_context(|| format!("{} cannot be started", name(command)))?;
     if !output.status.success() {
         let text = String::from_utf8_lossy(&output.stderr);
         let last = text.lines().map(str::trim).rfind(|line| !line.is_empty());

@@ -1,16 +1,14 @@
 //! Recordings: the pinned files of `datasets/manifest.toml`, found or fetched.
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result, bail, ensure};
-use serde::{Deserialize, Serialize};
-
 use crate::cache::sha256;
 use crate::process::read;
 use crate::python::Python;
 use crate::workspace::{FETCHED, Workspace, absolute};
+use anyhow::{Context, Result, bail, ensure};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = "datasets/manifest.toml";
 /// The conventions with files, in order of preference.

@@ -1,13 +1,11 @@
 //! Rules of this repository that no other tool checks: recordings and paths of a developer's machine must not be
 //! tracked; names, lengths and columns of files; sizes of pages.
 
-use std::path::Path;
-
-use anyhow::{Context, Result, ensure};
-
 use crate::cache::sha256;
 use crate::recordings::{Manifest, RECORDED};
 use crate::workspace::Workspace;
+use anyhow::{Context, Result, ensure};
+use std::path::Path;
 
 /// Largest number of lines of a Rust file, and of columns of Rust and Markdown.
 const LINES: usize = 500;

@@ -1,15 +1,13 @@
 //! Programs of others that the checks run: pinned wheels, fetched once per machine into the user's cache.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-use anyhow::{Context, Result};
-
 use crate::cache::{self, sha256};
 use crate::process::{read, run};
 use crate::python::Python;
 use crate::workspace::Workspace;
+use anyhow::{Context, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Names, versions and SHA-256 sums, for pip: of the checks, and of a release.
 const LIST: &str = "xtask/tools.txt";

@@ -1,7 +1,5 @@
 //! Goals from analogues: similar pedestrians in their own heading frames, and their endpoints.
 
-use ddl_core::WINDOW;
-
 use crate::choice::choose;
 use crate::error::{GoalError, LibraryError, TrackError};
 use crate::expert::Expert;
@@ -11,6 +9,7 @@ use crate::motion::Motion;
 use crate::motion_index::MotionIndex;
 use crate::points::{Points, is_in_range};
 use crate::span::QuerySpan;
+use ddl_core::WINDOW;
 
 /// Temperature of the weights, relative to the distance of the farthest analogue.
 const TEMPERATURE: f64 = 0.4;

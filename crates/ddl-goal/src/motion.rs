@@ -1,10 +1,9 @@
 //! The motion of a pedestrian in its own frame, relative to its own pace.
 
-use ddl_core::WINDOW;
-
 use crate::error::TrackError;
 use crate::heading::HeadingFrame;
 use crate::span::{QuerySpan, velocities};
+use ddl_core::WINDOW;
 
 /// Components compared: 7 velocities ahead, the direction in the world (2), 7 velocities to the left.
 pub(crate) const COMPONENTS: usize = SIGNED + STEPS;

@@ -3,10 +3,9 @@
 #[path = "../tests/walks/mod.rs"]
 mod walks;
 
-use std::hint::black_box;
-
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ddl_softdtw::SearchIndex;
+use std::hint::black_box;
 use walks::{RandomNumbers, dtw_of};
 
 fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]]) {

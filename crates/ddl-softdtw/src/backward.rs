@@ -1,13 +1,12 @@
 //! The backward recursion: the expected alignment of two sequences, and the gradient from it.
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use ddl_simd::{Dispatch, Kernel, Simd};
-use fearless_simd::f64x8;
-use fearless_simd::prelude::*;
-
 use crate::forward::{ForwardStep, STRETCH};
 use crate::grid::{Grid, STRIP, Slanted, Strip};
 use crate::weight::{NONE, Weight, above, lane, normalised, normalised_one, shares, splat, sums};
+use ddl_simd::{Dispatch, Kernel, Simd};
+use fearless_simd::f64x8;
+use fearless_simd::prelude::*;
 
 impl<const D: usize> Grid<'_, D> {
     /// The value and its gradient with respect to the rows; not finite when they exceed the range of `f64`.

@@ -1,9 +1,8 @@
 //! Sequences in groups of sixteen, one per lane, in `f32`. They are scaled and shifted so that squared differences are
 //! in log2 units.
 
-use std::ops::Range;
-
 use ddl_simd::{LANES, Lanes};
+use std::ops::Range;
 
 /// Marks a free lane, in place of the index of a sequence.
 pub(crate) const FREE: usize = usize::MAX;

@@ -22,11 +22,10 @@
 //! independent of each other. One row is kept between strips.
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use ddl_simd::{Dispatch, Kernel, Simd};
-
 use crate::exp2::exp2_parts;
 use crate::grid::{Grid, STRIP, Slanted, Strip};
 use crate::weight::{Cells, NONE, Weight, below, lane, normalised, normalised_one, only, splat, sums};
+use ddl_simd::{Dispatch, Kernel, Simd};
 
 /// Entries of the working memory that fit on the stack.
 const SHORT: usize = 48;

@@ -9,11 +9,10 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use ddl_simd::{Lanes, Simd, exp2_each};
-use fearless_simd::prelude::*;
-
 use crate::blocks::BlockStep;
 use crate::range::{COST_LIMIT, FUSED_FLOOR, UNFUSED_FLOOR};
+use ddl_simd::{Lanes, Simd, exp2_each};
+use fearless_simd::prelude::*;
 
 /// Number of cells whose similarities are computed together if the compiler does not know the length of a sequence:
 /// enough independent operations to hide their latency.

@@ -2,13 +2,12 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use ddl_simd::{Dispatch, InstructionSet, Kernel, LANES, Lanes, Simd};
-use fearless_simd::prelude::*;
-
 use crate::blocks::{BlockRun, BlockStep, Blocks, FREE};
 use crate::range::Range;
 use crate::recursion::{GROUP, load, recursion};
 use crate::select::Selection;
+use ddl_simd::{Dispatch, InstructionSet, Kernel, LANES, Lanes, Simd};
+use fearless_simd::prelude::*;
 
 /// The candidates in blocks, with the weights that normalise their scores.
 #[derive(Clone, Debug)]

@@ -1,12 +1,11 @@
 //! `cargo xtask benchmark`: libtorch, the recordings and the program, then `ddl benchmark`.
 
-use anyhow::{Context, Result};
-use clap::Args;
-
 use super::set_up;
 use crate::process::run;
 use crate::recordings::bring_in_for;
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result};
+use clap::Args;
 
 #[derive(Debug, Args)]
 pub(crate) struct BenchmarkArguments {

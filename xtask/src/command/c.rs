@@ -1,14 +1,12 @@
 //! `cargo xtask c`: the library for C and C++, installed with its headers, for `pkg-config` and `CMake`.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result, ensure};
-use clap::Args;
-
 use crate::debian;
 use crate::process::run;
 use crate::workspace::{Workspace, absolute};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 const CRATE: &str = "crates/ddl-c";
 /// Where the checks install.

@@ -1,11 +1,5 @@
 //! `cargo xtask ci`: all checks, cheapest first, tests last. `cargo xtask check`: the quick ones.
 
-use std::path::Path;
-use std::thread;
-use std::time::Instant;
-
-use anyhow::{Context, Result, ensure};
-
 use super::{benchmark, c, docs, python, set_up, test};
 use crate::browser;
 use crate::process::{read, run as run_command};
@@ -13,6 +7,10 @@ use crate::recordings;
 use crate::tidy;
 use crate::tools::Tools;
 use crate::workspace::Workspace;
+use anyhow::{Context, Result, ensure};
+use std::path::Path;
+use std::thread;
+use std::time::Instant;
 
 type NamedCheck = (&'static str, fn(&Workspace) -> Result<()>);
 

@@ -1,12 +1,10 @@
 //! `cargo xtask data`: find, fetch and verify the recordings.
 
-use std::path::PathBuf;
-
-use anyhow::{Result, ensure};
-use clap::{Args, ValueEnum};
-
 use crate::recordings::{Manifest, RECORDED, SIMULATED};
 use crate::workspace::Workspace;
+use anyhow::{Result, ensure};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct DataArguments {

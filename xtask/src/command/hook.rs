@@ -1,16 +1,14 @@
 //! `cargo xtask hook`: format, columns and spelling of what is staged, in a second. `xtask/hooks/pre-commit` calls it.
 
-use std::io::Write as _;
-use std::path::PathBuf;
-use std::process::Stdio;
-use std::thread;
-
-use anyhow::{Context, Result, ensure};
-
 use crate::process::{read, run as run_command};
 use crate::tidy;
 use crate::tools::Tools;
 use crate::workspace::Workspace;
+use anyhow::{Context, Result, ensure};
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::Stdio;
+use std::thread;
 
 /// Relative to the root of each checkout.
 const FOLDER: &str = "xtask/hooks";
@@ -64,8 +62,7 @@ fn faults(workspace: &Workspace, files: &[PathBuf]) -> Result<Vec<String>> {
     Ok(faults)
 }
 
-/// Whether the program of the toolchain leaves a text as it is. Its option `--check` reports nothing of a text that it is
-/// given as input.
+/// Whether rustfmt leaves a text as it is. The exit code of `--check` says nothing of a text that it gets as input.
 fn is_formatted(workspace: &Workspace, text: &str) -> Result<bool> {
     let mut rustfmt = workspace.program("rustfmt");
     rustfmt.args(["--quiet", "--edition", "2024"]).stdin(Stdio::piped()).stdout(Stdio::piped());

@@ -1,12 +1,5 @@
 //! `cargo xtask nightly`: what takes too long for `ci`. docs/reliability.md says when each was run, and its figures.
 
-use std::fs;
-use std::process::Command;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
-
-use anyhow::{Result, ensure};
-use clap::{Args, ValueEnum};
-
 use super::{c, docs, python, release, set_up, test, web};
 use crate::browser;
 use crate::debian;
@@ -15,6 +8,11 @@ use crate::process::{read, run};
 use crate::recordings::bring_in;
 use crate::tools::cargo_tool;
 use crate::workspace::Workspace;
+use anyhow::{Result, ensure};
+use clap::{Args, ValueEnum};
+use std::fs;
+use std::process::Command;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// Size of a sample of mutants, of 17,000.
 const MUTANTS: usize = 120;
@@ -142,9 +140,7 @@ fn mutants(workspace: &Workspace, words: &[String]) -> Result<()> {
     };
     let words = if words.is_empty() { sample(&mut mutants(&["--list".to_owned()]))? } else { words.to_vec() };
     println!("cargo xtask nightly mutants -- {}", words.join(" "));
-    let Err(failure) = run(&mut mutants(&words)) else {
-        return Ok(());
-    };
+    let Err(failure) = run(&mut mutants(&words)) else { return Ok(()) };
     let missed = fs::read_to_string(workspace.path("target/mutants.out/missed.txt")).unwrap_or_default();
     ensure!(!missed.is_empty(), failure);
     // Names as regular expressions, whose special characters stand for themselves among others.

@@ -1,13 +1,5 @@
 //! `cargo xtask release`: everything that a version consists of, built and checked; to publish it, a person has keys.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Instant;
-
-use anyhow::{Context, Result, ensure};
-use clap::Args;
-
 use super::{c, set_up, web};
 use crate::cache::{self, sha256};
 use crate::debian;
@@ -15,6 +7,12 @@ use crate::process::{read, run};
 use crate::rust_target;
 use crate::tools::{Tools, cargo_tool};
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The folder of the files of a release.

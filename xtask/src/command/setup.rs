@@ -1,13 +1,11 @@
 //! `cargo xtask setup`: libtorch, cargo's configuration for it, and the hook of git.
 
-use std::time::Instant;
-
-use anyhow::Result;
-use clap::Args;
-
 use super::hook;
 use crate::libtorch::{self, LibtorchRequest};
 use crate::workspace::Workspace;
+use anyhow::Result;
+use clap::Args;
+use std::time::Instant;
 
 #[derive(Debug, Args)]
 pub(crate) struct SetupArguments {

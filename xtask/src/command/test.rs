@@ -3,13 +3,12 @@
 //! Every build here selects the whole workspace with its tests, so that cargo chooses one set of features for the
 //! dependencies and compiles each crate once. Only what depends on the feature `torch` is compiled twice.
 
-use anyhow::Result;
-use clap::Args;
-
 use super::set_up;
 use crate::process::run;
 use crate::recordings::bring_in;
 use crate::workspace::Workspace;
+use anyhow::Result;
+use clap::Args;
 
 /// Everything that can be built without the feature `torch`.
 const PLAIN: &str = "--workspace --lib --bins --examples --tests";

@@ -1,17 +1,15 @@
 //! `cargo xtask web`: the forecaster as WebAssembly, in a page of one file and in an npm package.
 
-use std::fs;
-use std::path::Path;
-
-use anyhow::{Context, Result};
-use clap::Args;
-
 use crate::browser;
 use crate::debian;
 use crate::process::run;
 use crate::rust_target;
 use crate::tools::Tools;
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result};
+use clap::Args;
+use std::fs;
+use std::path::Path;
 
 /// The folder of page and package.
 const MADE: &str = "target/web";

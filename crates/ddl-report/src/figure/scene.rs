@@ -1,13 +1,12 @@
 //! One scene: the past, future and forecast of every pedestrian.
 
-use ddl_core::{Disc, Forecast, HORIZON, OBSERVED, Position, Window};
-
 use crate::error::ReportError;
 use crate::figure::axes::{Axes, SCENE};
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
 use crate::figure::legend::{self, LegendSample};
 use crate::figure::pedestrian;
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
+use ddl_core::{Disc, Forecast, HORIZON, OBSERVED, Position, Window};
 
 /// Probability that the drawn region contains the pedestrian at the end of the horizon.
 const LEVEL: f64 = 0.9;

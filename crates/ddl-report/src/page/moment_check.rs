@@ -1,9 +1,8 @@
 //! Whether moments are whole: they may come from a file.
 
-use ddl_core::{COORDINATE_LIMIT, HORIZON, OBSERVED, Position};
-
 use crate::error::{MomentFault, ReportError};
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
+use ddl_core::{COORDINATE_LIMIT, HORIZON, OBSERVED, Position};
 
 /// Checks moments whose true futures have at least `truth` positions: [`HORIZON`] where errors are shown.
 pub(super) fn check(moments: &[ForecastSnapshot], truth: usize) -> Result<(), ReportError> {

@@ -39,8 +39,7 @@ impl AttentionBlocks {
     pub(crate) fn new(scenes: &Scenes, device: Device, kind: Kind) -> Self {
         let blocks = blocks(scenes);
         let length = blocks.iter().map(|block| block.queries.len()).max().unwrap_or(0);
-        let width = blocks.iter().map(|block| block.keys.len()).max().unwrap_or(0);
-        let width = width.next_multiple_of(ALIGNMENT);
+        let width = blocks.iter().map(|block| block.keys.len()).max().unwrap_or(0).next_multiple_of(ALIGNMENT);
         let (mut queries, mut keys, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for block in &blocks {
             let first = block.queries.start;
@@ -93,8 +92,7 @@ impl AttentionBlocks {
     /// The rows of `pedestrians`, queries or keys. Shapes: `x` `[B, P, n]` -> `[B, S, L, n]` or `[B, S, M, n]`.
     pub(super) fn in_blocks(&self, x: &Tensor, pedestrians: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
-        let gathered = x.index_select(1, pedestrians);
-        gathered.view([batch, self.blocks, -1, width])
+        x.index_select(1, pedestrians).view([batch, self.blocks, -1, width])
     }
 }
 

@@ -32,8 +32,7 @@ impl Parameters {
             .map(|tensor| {
                 let span = tensor.span();
                 let shape: Vec<i64> = tensor.shape().iter().map(|&size| size as i64).collect();
-                let view = flat.narrow(0, span.start as i64, span.len() as i64);
-                let view = view.view(shape.as_slice());
+                let view = flat.narrow(0, span.start as i64, span.len() as i64).view(shape.as_slice());
                 let mut learned = view.copy().set_requires_grad(true);
                 learned.set_data(&view);
                 learned
@@ -50,8 +49,7 @@ impl Parameters {
     /// Names and tensors, in order.
     #[cfg(test)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &Tensor)> {
-        let names = self.layout.tensors().iter().map(TensorLayout::name);
-        names.zip(&self.tensors)
+        self.layout.tensors().iter().map(TensorLayout::name).zip(&self.tensors)
     }
 
     /// The tensor of that name.

@@ -75,7 +75,7 @@ impl Layers {
         let shape = [1, positions.size()[1]];
         let dynamics = self.config.variant.dynamics();
         let emission = Emission::new(backend, self.output, noise_weight, noise, shape, dynamics);
-        let emitted = guidance.to_world(&emission.of(backend, &features));
+        let emitted = guidance.to_world(&emission.factors(backend, &features));
         guidance.next_positions(&positions, goals, &emitted, (0, steps))
     }
 
@@ -130,7 +130,7 @@ impl Layers {
         let mut path = Vec::with_capacity(HORIZON);
         let mut factors = Vec::with_capacity(HORIZON);
         for t in OBSERVED..OBSERVED + HORIZON {
-            let emitted = guidance.to_world(&emission.of(backend, from_ref(&features)));
+            let emitted = guidance.to_world(&emission.factors(backend, from_ref(&features)));
             let before = position.detach();
             let steps = (t - OBSERVED, OBSERVED + HORIZON - t);
             position = guidance.next_positions(&position, goals, &emitted, steps);

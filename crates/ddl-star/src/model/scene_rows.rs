@@ -42,11 +42,9 @@ impl TensorSceneRows {
     /// Shapes: `x` `[B, P, n]` -> the same.
     pub(crate) fn means(&self, x: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
-        let rows = x.index_select(1, &self.pedestrians);
-        let rows = rows.view([batch, self.scenes, self.length, width]);
+        let rows = x.index_select(1, &self.pedestrians).view([batch, self.scenes, self.length, width]);
         let means = (&rows * &self.shares).sum_dim_intlist([2i64].as_slice(), true, None::<Kind>);
-        let rows = means.expand_as(&rows).reshape([batch, -1, width]);
-        rows.index_select(1, &self.places)
+        means.expand_as(&rows).reshape([batch, -1, width]).index_select(1, &self.places)
     }
 
     pub(crate) fn shallow_clone(&self) -> Self {

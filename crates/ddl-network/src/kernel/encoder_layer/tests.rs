@@ -123,8 +123,7 @@ fn the_number_of_threads_changes_no_bit() {
 fn gradients_are_slopes() {
     let scenes = [4, 1, 6];
     let moved = |numbers: &[f32], direction: &[f32], by: f64| -> Vec<f32> {
-        let moved = numbers.iter().zip(direction);
-        let moved = moved.map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32);
+        let moved = numbers.iter().zip(direction).map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32);
         moved.collect()
     };
     let times = |numbers: &[f32], factor: f32| -> Vec<f32> { numbers.iter().map(|number| number * factor).collect() };

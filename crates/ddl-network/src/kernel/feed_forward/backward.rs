@@ -2,8 +2,6 @@
 //! So only gx, which is small (`rows * width` for each group), has to be summed over the groups. The groups, and so the
 //! sums, do not depend on the number of threads.
 
-use std::ops::DerefMut;
-
 use crate::kernel::buffer::{Buffer, add_to};
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use crate::kernel::dropout::Dropout;
@@ -13,6 +11,7 @@ use crate::kernel::product::{BLOCK, End, Start, add_transposed_product, multiply
 use crate::kernel::threads::run_each;
 use ddl_simd::{LANES, Simd, TiledKernel};
 use fearless_simd::prelude::*;
+use std::ops::DerefMut;
 
 const GROUPS: usize = 8;
 /// Number of rows after which the groups' gx are added: these rows fit the second-level cache.
