@@ -9,7 +9,7 @@ use crate::kernel::tests::numbers::SeededNumbers;
 pub(super) const UNIT: f64 = 1.0 / 16_777_216.0;
 
 /// A layer with its input and the gradient of its output.
-pub(super) struct LayerCase {
+pub(super) struct FeedForwardCase {
     pub(super) width: usize,
     pub(super) hidden: usize,
     pub(super) w1: Vec<f32>,
@@ -38,7 +38,7 @@ impl Sum {
     }
 }
 
-impl LayerCase {
+impl FeedForwardCase {
     pub(super) fn new(width: usize, hidden: usize, rows: usize, dropout: Option<Dropout>) -> Self {
         let mut numbers = SeededNumbers::seeded((width * 1_000_003 + hidden * 1009 + rows) as u64);
         let (inner, outer) = (1.0 / (width as f32).sqrt(), 1.0 / (hidden as f32).sqrt());
