@@ -1,15 +1,13 @@
 //! A browser and its driver, for the checks of pages.
 
-use std::env;
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result};
-
 use crate::debian;
 use crate::process::{find_on_path, run};
 use crate::tools::Tools;
 use crate::workspace::Workspace;
+use anyhow::{Context, Result};
+use std::env;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 const NAMES: &str = "chromium chromium-browser google-chrome google-chrome-stable chrome";
 

@@ -1,13 +1,12 @@
 //! The user's cache, which is kept between calls: libtorch and tools, one folder each. Files and folders are whole or
 //! absent.
 
+use anyhow::{Context, Result};
+use sha2::{Digest as _, Sha256};
 use std::env;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result};
-use sha2::{Digest as _, Sha256};
 
 /// `$XDG_CACHE_HOME/ddl`, or `~/.cache/ddl`.
 pub(crate) fn folder() -> Result<PathBuf> {

@@ -1,11 +1,9 @@
 //! Installation of Debian packages that a check needs.
 
+use crate::process::{find_on_path, read, run};
+use anyhow::{Context, Result, ensure};
 use std::ffi::OsStr;
 use std::process::Command;
-
-use anyhow::{Context, Result, ensure};
-
-use crate::process::{find_on_path, read, run};
 
 /// Installs `packages` unless `program` is on the search path. The error names what to install.
 pub(crate) fn ensure_program(program: &str, packages: &[&str]) -> Result<()> {

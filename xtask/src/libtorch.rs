@@ -5,16 +5,14 @@ mod config;
 mod fetch;
 mod locate;
 
-use std::env;
-use std::ffi::OsStr;
-use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result, bail};
-use clap::Args;
-
 use crate::cache;
 use crate::process::find_on_path;
 use crate::workspace::{Workspace, absolute};
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use std::env;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
 /// Version of libtorch that the binding in `Cargo.lock` requires.
 pub(crate) const VERSION: &str = "2.11.0";
@@ -23,7 +21,7 @@ pub(crate) const VERSION: &str = "2.11.0";
 pub(crate) const FETCHED: &str = "from the pinned wheels";
 
 #[derive(Debug, Clone, Default, Args)]
-pub(crate) struct Request {
+pub(crate) struct LibtorchRequest {
     /// Folder with the pinned wheels, for a machine without a package index
     #[arg(long, value_name = "DIR")]
     wheel_dir: Option<PathBuf>,
@@ -42,7 +40,7 @@ pub(crate) struct Ready {
 }
 
 /// Makes plain `cargo build`, `test`, `run`, `bench` and `doc` work.
-pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> {
+pub(crate) fn ensure(workspace: &Workspace, request: &LibtorchRequest) -> Result<Ready> {
     require_compiler()?;
     let generated = workspace.path(config::GENERATED);
     let (folder, origin) = choose(&generated, request)?;
@@ -50,7 +48,7 @@ pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> 
     Ok(Ready { folder, origin, reconfigured })
 }
 
-fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, &'static str)> {
+fn choose(generated: &Path, request: &LibtorchRequest) -> Result<(PathBuf, &'static str)> {
     let configured = config::read(generated);
     let variable = env::var_os("LIBTORCH").filter(|value| !value.is_empty());
     let variable = variable.map(PathBuf::from);

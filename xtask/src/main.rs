@@ -18,19 +18,17 @@ mod tidy;
 mod tools;
 mod workspace;
 
-use std::process::ExitCode;
-
-use clap::Parser;
-
-use crate::command::Command;
+use crate::command::XtaskCommand;
 use crate::workspace::Workspace;
+use clap::Parser;
+use std::process::ExitCode;
 
 /// Set-up, recordings, benchmark, checks and tests of the DDL workspace.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version, max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
-    command: Command,
+    command: XtaskCommand,
 }
 
 fn main() -> ExitCode {

@@ -1,26 +1,25 @@
 //! Programs that this one starts.
 
+use anyhow::{Context, Result, bail, ensure};
 use std::env;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result, bail, ensure};
-
 /// Prints the command and runs it to its end. A failure is an error.
 pub(crate) fn run(command: &mut Command) -> Result<()> {
     let line = shown(command);
     eprintln!("$ {line}");
-    let status = command.stdin(Stdio::null()).status();
-    let status = status.with_context(|| format!("{} cannot be started", name(command)))?;
+    let status =
+        command.stdin(Stdio::null()).status().with_context(|| format!("{} cannot be started", name(command)))?;
     ensure!(status.success(), "`{line}` failed: {status}");
     Ok(())
 }
 
 /// Runs a command silently and returns what it prints. The error is the last line of its standard error.
 pub(crate) fn read(command: &mut Command) -> Result<String> {
-    let output = command.stdin(Stdio::null()).output();
-    let output = output.with_context(|| format!("{} cannot be started", name(command)))?;
+    let output =
+        command.stdin(Stdio::null()).output().with_context(|| format!("{} cannot be started", name(command)))?;
     if !output.status.success() {
         let text = String::from_utf8_lossy(&output.stderr);
         let last = text.lines().map(str::trim).rfind(|line| !line.is_empty());
@@ -49,5 +48,7 @@ pub(crate) fn find_on_path(name: &OsStr) -> Option<PathBuf> {
         return Path::new(name).is_file().then(|| name.into());
     }
     let path = env::var_os("PATH")?;
-    env::split_paths(&path).map(|folder| folder.join(name)).find(|program| program.is_file())
+    let mut file = name.to_owned();
+    file.push(env::consts::EXE_SUFFIX);
+    env::split_paths(&path).map(|folder| folder.join(&file)).find(|program| program.is_file())
 }

@@ -1,13 +1,11 @@
 //! Python 3, used for network access and archive formats, because its package client fetches libtorch anyway. What it
 //! fetches is checked against SHA-256 sums of this repository.
 
+use crate::process::{find_on_path, read};
+use anyhow::{Result, ensure};
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::process::Command;
-
-use anyhow::{Result, ensure};
-
-use crate::process::{find_on_path, read};
 
 #[derive(Debug, Clone)]
 pub(crate) struct Python {

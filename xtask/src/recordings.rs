@@ -1,16 +1,14 @@
 //! Recordings: the pinned files of `datasets/manifest.toml`, found or fetched.
 
-use std::collections::BTreeMap;
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result, bail, ensure};
-use serde::{Deserialize, Serialize};
-
 use crate::cache::sha256;
 use crate::process::read;
 use crate::python::Python;
 use crate::workspace::{FETCHED, Workspace, absolute};
+use anyhow::{Context, Result, bail, ensure};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 const MANIFEST: &str = "datasets/manifest.toml";
 /// The conventions with files, in order of preference.
@@ -22,16 +20,16 @@ const FETCH: &str = include_str!("python/fetch.py");
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Manifest {
-    star: Entry,
+    star: ConventionFiles,
     #[serde(rename = "social-gan")]
-    social_gan: Entry,
+    social_gan: ConventionFiles,
     pub(crate) citation: BTreeMap<String, String>,
 }
 
 /// The recordings of one convention.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Entry {
+pub(crate) struct ConventionFiles {
     pub(crate) description: String,
     pub(crate) terms: String,
     /// Keys of the manifest's citations.
@@ -59,7 +57,7 @@ impl Manifest {
         toml::from_str(&text).with_context(|| format!("{MANIFEST} is not well formed"))
     }
 
-    pub(crate) fn entry(&self, convention: &str) -> Result<&Entry> {
+    pub(crate) fn entry(&self, convention: &str) -> Result<&ConventionFiles> {
         match convention {
             "star" => Ok(&self.star),
             "social-gan" => Ok(&self.social_gan),
@@ -68,7 +66,7 @@ impl Manifest {
     }
 }
 
-impl Entry {
+impl ConventionFiles {
     /// The folder with the files of this convention, found by their names as `ddl` does: in `data` if given, else in
     /// `$DDL_DATASETS`, else in `datasets/eth_ucy`; there, in a sub-folder of this name, or in one beside it.
     pub(crate) fn locate(&self, workspace: &Workspace, convention: &str, data: Option<&Path>) -> Result<PathBuf> {

@@ -1,15 +1,13 @@
 //! The standard library of a target other than this machine: rustup's, or one that is built from Debian's sources.
 
+use crate::debian;
+use crate::process::{find_on_path, read, run};
+use crate::workspace::Workspace;
+use anyhow::{Context, Result};
 use std::env;
 use std::ffi::{OsStr, OsString};
 use std::path::Path;
 use std::process::Command;
-
-use anyhow::{Context, Result};
-
-use crate::debian;
-use crate::process::{find_on_path, read, run};
-use crate::workspace::Workspace;
 
 /// Debian's compiler, its sources of the standard library, and the packages of both.
 const COMPILER: &str = "/usr/bin/rustc";

@@ -1,13 +1,11 @@
 //! Rules of this repository that no other tool checks: recordings and paths of a developer's machine must not be
 //! tracked; names, lengths and columns of files; sizes of pages.
 
-use std::path::Path;
-
-use anyhow::{Context, Result, ensure};
-
 use crate::cache::sha256;
 use crate::recordings::{Manifest, RECORDED};
 use crate::workspace::Workspace;
+use anyhow::{Context, Result, ensure};
+use std::path::Path;
 
 /// Largest number of lines of a Rust file, and of columns of Rust and Markdown.
 const LINES: usize = 500;
@@ -78,7 +76,7 @@ fn is_page(file: &Path) -> bool {
     file.starts_with("docs") && file.extension().is_some_and(|extension| extension == "md")
 }
 
-fn text_faults(file: &Path, text: &str) -> Vec<String> {
+pub(crate) fn text_faults(file: &Path, text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     let mut names = file.iter().chain(file.file_stem()).filter_map(|name| name.to_str());
     if let Some(name) = names.find(|name| EMPTY_NAMES.contains(name)) {

@@ -1,15 +1,13 @@
 //! Programs of others that the checks run: pinned wheels, fetched once per machine into the user's cache.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-use anyhow::{Context, Result};
-
 use crate::cache::{self, sha256};
 use crate::process::{read, run};
 use crate::python::Python;
 use crate::workspace::Workspace;
+use anyhow::{Context, Result};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Names, versions and SHA-256 sums, for pip: of the checks, and of a release.
 const LIST: &str = "xtask/tools.txt";
@@ -33,13 +31,17 @@ impl Tools {
         Self::of_list(workspace, LIST_OF_RELEASE)
     }
 
+    /// The tools of the checks if they were fetched before.
+    pub(crate) fn kept(workspace: &Workspace) -> Result<Option<Self>> {
+        let Ok(python) = Python::find() else { return Ok(None) };
+        let folder = folder(&python, &workspace.path(LIST))?;
+        Ok(folder.is_dir().then_some(Self { folder, python }))
+    }
+
     fn of_list(workspace: &Workspace, list: &str) -> Result<Self> {
         let python = Python::find()?;
         let list = workspace.path(list);
-        // Some packages are compiled for one minor version of Python.
-        let version = read(&mut python.call(["-c", "import sys; print('%d.%d' % sys.version_info[:2])"]))?;
-        let name = format!("tools-{}-{}", version.trim(), &sha256(&list)?[..12]);
-        let folder = cache::folder()?.join(name);
+        let folder = folder(&python, &list)?;
         if !folder.is_dir() {
             eprintln!("fetching the tools of {} with pip, once", list.display());
             fs::create_dir_all(cache::folder()?)?;
@@ -71,6 +73,12 @@ impl Tools {
         command.env("PYTHONPATH", &self.folder).env("PYTHONDONTWRITEBYTECODE", "1");
         command
     }
+}
+
+/// Where the tools of a list are: some packages are compiled for one minor version of Python.
+fn folder(python: &Python, list: &Path) -> Result<PathBuf> {
+    let version = read(&mut python.call(["-c", "import sys; print('%d.%d' % sys.version_info[:2])"]))?;
+    Ok(cache::folder()?.join(format!("tools-{}-{}", version.trim(), &sha256(list)?[..12])))
 }
 
 /// A cargo subcommand of others that no wheel has, built once per machine into the user's cache.

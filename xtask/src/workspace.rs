@@ -1,5 +1,7 @@
 //! The workspace: its location, and calls of its own cargo and git.
 
+use crate::process::read;
+use anyhow::{Context, Result};
 use std::collections::BTreeSet;
 use std::env;
 use std::ffi::{OsStr, OsString};
@@ -7,10 +9,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Once;
-
-use anyhow::{Context, Result};
-
-use crate::process::read;
 
 /// Variables that would replace the configured flags, and so the path to libtorch, or make the build of the binding
 /// ignore `LIBTORCH`.

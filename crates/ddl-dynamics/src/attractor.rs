@@ -1,12 +1,11 @@
 //! The attractor: the distance to the goal, and its gradient.
 
-use nalgebra::SVector;
-
 use crate::{
     error::{DynamicsError, ensure_finite},
     polar::polar_way,
     real::Real,
 };
+use nalgebra::SVector;
 
 /// The potential `Phi(p) = |p - p*|`, the distance to a goal `p*`; every flow of this crate descends it.
 ///

@@ -1,9 +1,8 @@
 //! Errors of this crate.
 
+use crate::real::Real;
 use nalgebra::SVector;
 use thiserror::Error;
-
-use crate::real::Real;
 
 /// An invalid input. This crate does not panic on invalid input.
 #[derive(Debug, Clone, PartialEq, Error)]

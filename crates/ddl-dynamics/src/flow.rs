@@ -1,11 +1,10 @@
 //! Flows: the velocity with which a pedestrian approaches its goal.
 
-use nalgebra::SVector;
-
 use crate::{
     attractor::Attractor, error::DynamicsError, metric::CholeskyMetric, metric_source::MetricSource, real::Real,
     state::State,
 };
+use nalgebra::SVector;
 
 /// Natural gradient descent to the goal of an [attractor](Self::attractor) `Phi`, stable by construction:
 ///

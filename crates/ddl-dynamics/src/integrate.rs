@@ -3,9 +3,8 @@
 mod euler;
 mod stable_euler;
 
-use nalgebra::SVector;
-
 use crate::{error::DynamicsError, flow::NaturalGradientFlow, metric_source::MetricSource, real::Real, state::State};
+use nalgebra::SVector;
 
 pub use euler::Euler;
 pub use stable_euler::StableEuler;

@@ -4,9 +4,6 @@ mod certified_step;
 mod motion;
 mod violation;
 
-use nalgebra::SVector;
-use serde::{Deserialize, Serialize};
-
 use crate::{
     attractor::Attractor,
     error::{DynamicsError, ensure_finite, ensure_time_step},
@@ -17,6 +14,8 @@ use crate::{
     real::Real,
     state::State,
 };
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
 
 pub use certified_step::CertifiedStep;
 pub use motion::{Bounded, MotionEvidence};

@@ -1,12 +1,11 @@
 //! The metric `P = L L^T + sigma I`, stored as its Cholesky factor.
 
-use nalgebra::{SMatrix, SVector};
-
 use crate::{
     error::{DynamicsError, ensure_positive},
     real::Real,
     spectrum::{EigenvalueRange, factor_singular_values},
 };
+use nalgebra::{SMatrix, SVector};
 
 /// The `sigma` of the paper: 1e-8 m/s.
 pub const PUBLISHED_SIGMA: f64 = 1e-8;

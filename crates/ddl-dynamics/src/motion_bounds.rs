@@ -1,8 +1,7 @@
 //! Bounds of a motion that has to arrive in time, and the neutral motion within them.
 
-use nalgebra::{Vector2, Vector3};
-
 use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::EigenvalueRange};
+use nalgebra::{Vector2, Vector3};
 
 /// Bounds within which a metric shapes the path of a pedestrian that arrives at its goal in time, and the neutral
 /// motion that applies without a metric.

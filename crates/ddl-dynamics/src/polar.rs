@@ -1,8 +1,7 @@
 //! Polar form of a vector: its length and its direction, without overflow or underflow.
 
-use nalgebra::SVector;
-
 use crate::real::Real;
+use nalgebra::SVector;
 
 /// Length of `vector` and the unit vector along it; `(0, 0)` for the zero vector.
 ///

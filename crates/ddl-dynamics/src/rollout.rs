@@ -1,7 +1,5 @@
 //! Rollouts: a flow integrated for a number of steps.
 
-use nalgebra::SVector;
-
 use crate::{
     error::{DynamicsError, ensure_finite, ensure_time_step},
     flow::NaturalGradientFlow,
@@ -10,6 +8,7 @@ use crate::{
     real::Real,
     state::State,
 };
+use nalgebra::SVector;
 
 /// Integrates `flow` from `start` for `steps` steps of `dt` seconds.
 ///

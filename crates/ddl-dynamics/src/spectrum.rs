@@ -1,8 +1,7 @@
 //! Smallest and largest eigenvalue of a metric.
 
-use nalgebra::{DMatrix, SMatrix, SVD};
-
 use crate::real::Real;
+use nalgebra::{DMatrix, SMatrix, SVD};
 
 /// Iterations of the singular value decomposition allowed per dimension; a few are usual.
 const ITERATIONS_PER_DIMENSION: usize = 1000;

@@ -1,16 +1,15 @@
 //! Goals from analogues: similar pedestrians in their own heading frames, and their endpoints.
 
-use ddl_core::WINDOW;
-
 use crate::choice::choose;
 use crate::error::{GoalError, LibraryError, TrackError};
 use crate::expert::Expert;
 use crate::goal_set::GoalSet;
 use crate::library::ExpertLibrary;
-use crate::motion::Motion;
+use crate::motion::RecentMotion;
 use crate::motion_index::MotionIndex;
 use crate::points::{Points, is_in_range};
 use crate::span::QuerySpan;
+use ddl_core::WINDOW;
 
 /// Temperature of the weights, relative to the distance of the farthest analogue.
 const TEMPERATURE: f64 = 0.4;
@@ -34,7 +33,7 @@ impl Analogues {
     pub(crate) fn new(library: &ExpertLibrary) -> Result<Self, LibraryError> {
         let time_step = library.time_step;
         let prepared = library.of_each(|track| {
-            let motion = Motion::new(track, time_step)?;
+            let motion = RecentMotion::new(track, time_step)?;
             let deviation = motion.deviation(track[WINDOW - 1]);
             let index = WINDOW - 2;
             is_in_range(deviation)
@@ -46,7 +45,7 @@ impl Analogues {
     }
 
     pub(crate) fn goals(&self, track: &[[f64; 2]], experts: usize, clusters: usize) -> Result<GoalSet, GoalError> {
-        let motion = Motion::new(track, self.time_step)?;
+        let motion = RecentMotion::new(track, self.time_step)?;
         let mut analogues = self.index.nearest(&motion.components, experts);
         let points = self.weighted_deviations(&analogues);
         let (goals, weights) = choose(&points, clusters, STEPS);

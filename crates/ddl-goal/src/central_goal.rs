@@ -47,9 +47,7 @@ impl GoalSet {
             let ahead = HORIZON as f64 / (back.len() - 1) as f64;
             return std::array::from_fn(|axis| last[axis] + ahead * (last[axis] - first[axis]));
         }
-        let &[first, .., before, last] = observed else {
-            return median;
-        };
+        let &[first, .., before, last] = observed else { return median };
         let steps = (observed.len() - 1) as f64;
         let mean: [f64; 2] = std::array::from_fn(|axis| (last[axis] - first[axis]) / steps);
         let changes: Vec<[f64; 2]> = observed

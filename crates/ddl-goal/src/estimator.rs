@@ -1,8 +1,5 @@
 //! The goal estimator: it retrieves similar pedestrians and places goals among their endpoints.
 
-use ddl_softdtw::{Neighbour, SearchIndex, SoftDtw};
-use rayon::prelude::*;
-
 use crate::analogues::Analogues;
 use crate::error::GoalError;
 use crate::expert::Expert;
@@ -11,6 +8,8 @@ use crate::kmeans::KMeans;
 use crate::library::ExpertLibrary;
 use crate::params::{GoalEstimatorParams, RetrievalFrame};
 use crate::span::velocities;
+use ddl_softdtw::{Neighbour, SearchIndex, SoftDtw};
+use rayon::prelude::*;
 
 /// Estimates the goals of pedestrians from the endpoints of similar pedestrians in a library.
 ///

@@ -57,8 +57,7 @@ fn mean(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
 }
 
 fn total_distance(centre: [f64; 2], points: &[[f64; 2]], weights: &[f64]) -> f64 {
-    let pairs = points.iter().zip(weights);
-    pairs.map(|(&point, weight)| weight * squared_distance(point, centre).sqrt()).sum()
+    points.iter().zip(weights).map(|(&point, weight)| weight * squared_distance(point, centre).sqrt()).sum()
 }
 
 #[derive(Debug, Clone, Copy, Default)]

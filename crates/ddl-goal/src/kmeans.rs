@@ -1,12 +1,11 @@
 //! k-means of a few hundred points in the plane.
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-
 use crate::error::GoalError;
 use crate::lloyd::Lloyd;
 use crate::points::{Points, is_in_range};
 use crate::seeding::first_centres;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
 
 /// k-means with greedy k-means++ seeding, Lloyd's iteration and restarts. The run with the smallest inertia is used.
 ///

@@ -1,9 +1,8 @@
 //! The library of complete tracks.
 
-use ddl_core::WINDOW;
-
 use crate::error::{LibraryError, TrackError};
 use crate::span::check_finite;
+use ddl_core::WINDOW;
 
 /// Complete tracks of pedestrians from the training scenes; the most similar ones are retrieved as experts.
 ///

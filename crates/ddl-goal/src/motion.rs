@@ -1,10 +1,9 @@
 //! The motion of a pedestrian in its own frame, relative to its own pace.
 
-use ddl_core::WINDOW;
-
 use crate::error::TrackError;
 use crate::heading::HeadingFrame;
 use crate::span::{QuerySpan, velocities};
+use ddl_core::WINDOW;
 
 /// Components compared: 7 velocities ahead, the direction in the world (2), 7 velocities to the left.
 pub(crate) const COMPONENTS: usize = SIGNED + STEPS;
@@ -21,7 +20,7 @@ const DIRECTION: f64 = 0.2;
 const WALKING: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Motion {
+pub(crate) struct RecentMotion {
     pub(crate) frame: HeadingFrame,
     /// Velocities in the frame, divided by the pace, with smaller weights for earlier ones; and the direction in the
     /// world.
@@ -30,7 +29,7 @@ pub(crate) struct Motion {
     pub(crate) straight_on: [f64; 2],
 }
 
-impl Motion {
+impl RecentMotion {
     /// The motion in the first 8 positions (m) of `track`, `time_step` seconds apart.
     pub(crate) fn new(track: &[[f64; 2]], time_step: f64) -> Result<Self, TrackError> {
         let span = QuerySpan::Observed;
@@ -66,7 +65,7 @@ impl Motion {
         [0, 1].map(|d| end[d] - self.straight_on[d])
     }
 
-    /// The endpoint (m) with a given deviation (m): the inverse of [`Motion::deviation`].
+    /// The endpoint (m) with a given deviation (m): the inverse of [`RecentMotion::deviation`].
     pub(crate) fn place(&self, deviation: [f64; 2]) -> [f64; 2] {
         let in_frame = [0, 1].map(|d| self.straight_on[d] + deviation[d]);
         self.frame.to_world(in_frame)

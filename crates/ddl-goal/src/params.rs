@@ -1,9 +1,8 @@
 //! Parameters of the goal estimator.
 
-use serde::{Deserialize, Serialize};
-
 use crate::error::ParamsError;
 use crate::span::QuerySpan;
+use serde::{Deserialize, Serialize};
 
 /// Largest number of goals for a pedestrian; a forecast has 20. A file that asks for more would take all memory.
 pub(crate) const MOST_CLUSTERS: usize = 1000;

@@ -1,9 +1,8 @@
 //! Greedy k-means++: first centres that are far apart.
 
+use crate::points::{Points, squared_distance};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
-
-use crate::points::{Points, squared_distance};
 
 /// Chooses `clusters` of the points as first centres.
 ///

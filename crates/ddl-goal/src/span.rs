@@ -1,8 +1,7 @@
 //! The part of a track that a retrieval may read, and its velocities.
 
-use serde::{Deserialize, Serialize};
-
 use crate::error::TrackError;
+use serde::{Deserialize, Serialize};
 
 /// The part of a track that a retrieval may read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -1,11 +1,9 @@
 //! Selection of windows to show (moments), evenly spread over a fold.
 
-use std::collections::{BTreeMap, BTreeSet};
-
+use crate::snapshot::ForecastSnapshot;
 use ddl_core::{Forecast, Window};
 use ddl_eval::EvaluationError;
-
-use crate::snapshot::ForecastSnapshot;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Number of evenly spread moments of each recording.
 const MOMENTS_A_RECORDING: usize = 8;

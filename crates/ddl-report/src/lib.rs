@@ -9,6 +9,6 @@ pub mod page;
 mod report;
 mod snapshot;
 
-pub use error::ReportError;
+pub use error::{MomentFault, ReportError};
 pub use report::Report;
 pub use snapshot::{ForecastSnapshot, SnapshotHypothesis, SnapshotPedestrian};

@@ -2,12 +2,10 @@
 //! Values are those printed by the source, in metres, ADE/FDE. Rows of different conventions are not comparable: on ETH
 //! the same system errs about 60 % more in the `social-gan` files than in the `star` files.
 
-use std::sync::LazyLock;
-
+use crate::document::Table;
 use ddl_data::Convention;
 use serde::Deserialize;
-
-use crate::document::Table;
+use std::sync::LazyLock;
 
 /// The folds of every table here, in the order of its columns.
 pub(crate) const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
@@ -111,8 +109,7 @@ pub(crate) fn best(convention: Convention) -> Option<&'static PublishedRow> {
 pub(crate) fn social_gan_joint_table() -> Table {
     let mut table = Table::new(["method", "JADE m", "JFDE m", "CR_JADE", "CR_mean", "source"]).text_column("source");
     for row in &LITERATURE.social_gan_joint_eth {
-        let numbers = row.joint.into_iter().chain(row.collisions);
-        let numbers = numbers.map(|number| format!("{number:.3}"));
+        let numbers = row.joint.into_iter().chain(row.collisions).map(|number| format!("{number:.3}"));
         let start = [row.method.clone()].into_iter();
         table.row(start.chain(numbers).chain([row.source.clone()]));
     }
@@ -171,8 +168,7 @@ pub(crate) fn measured_table() -> Table {
 }
 
 fn cells(folds: &[[f64; 2]; 5], mean: [f64; 2], decimals: usize) -> impl Iterator<Item = String> {
-    let errors = folds.iter().copied().chain([mean]);
-    errors.map(move |[ade, fde]| format!("{ade:.decimals$}/{fde:.decimals$}"))
+    folds.iter().copied().chain([mean]).map(move |[ade, fde]| format!("{ade:.decimals$}/{fde:.decimals$}"))
 }
 
 #[cfg(test)]

@@ -1,13 +1,11 @@
 //! Results of several runs: tables, and JSON for programs.
 
-use std::path::Path;
-
+use crate::document::Document;
+use crate::error::ReportError;
 use ddl_data::Convention;
 use ddl_eval::ResultRow;
 use serde::{Deserialize, Serialize};
-
-use crate::document::Document;
-use crate::error::ReportError;
+use std::path::Path;
 
 mod ablation;
 mod across_protocols;
@@ -100,7 +98,7 @@ impl Report {
     /// once. The last row is the best published system of the convention. The second table has, for the same rows over
     /// the measured folds, the mean errors with their 95 % intervals, and further metrics.
     pub fn summary(&self, convention: Convention) -> Option<String> {
-        summary::of(&self.rows, convention)
+        summary::in_words(&self.rows, convention)
     }
 
     /// The report as JSON, one line for each row. [`Report::from_json`] makes the same report from it, bit by bit.

@@ -23,10 +23,10 @@ pub(crate) fn energy() -> Energy {
 }
 
 /// Where a pedestrian is (m), how fast it walked there (m/s), and weights and velocities of its hypotheses.
-pub(crate) type Pedestrian = (Position, Position, Vec<(f64, Position)>);
+pub(crate) type FixturePedestrian = (Position, Position, Vec<(f64, Position)>);
 
 /// A pedestrian a line: x, y and velocity, then the weight and the velocity of each hypothesis.
-pub(crate) fn pedestrians(text: &str) -> Vec<Pedestrian> {
+pub(crate) fn pedestrians(text: &str) -> Vec<FixturePedestrian> {
     let pedestrian = |line: &str| {
         let numbers: Vec<f64> = line.split_whitespace().map(|number| number.parse().unwrap()).collect();
         let (&[x, y, vx, vy], all) = numbers.split_first_chunk().unwrap();
@@ -36,11 +36,11 @@ pub(crate) fn pedestrians(text: &str) -> Vec<Pedestrian> {
     text.trim().lines().map(pedestrian).collect()
 }
 
-pub(crate) fn scene(pedestrians: &[Pedestrian]) -> (Window, Forecast) {
+pub(crate) fn scene(pedestrians: &[FixturePedestrian]) -> (Window, Forecast) {
     let along = |at: Position, velocity: Position, steps: i32| {
         [0, 1].map(|axis| at[axis] + 0.4 * f64::from(steps) * velocity[axis])
     };
-    let past = |&(at, velocity, _): &Pedestrian| (-7..=0).map(|t| along(at, velocity, t)).collect();
+    let past = |&(at, velocity, _): &FixturePedestrian| (-7..=0).map(|t| along(at, velocity, t)).collect();
     // Not in the order of their names.
     let count = pedestrians.len() as i64;
     let ids = (1..=count).map(|i| PedestrianId(i % count)).collect();
@@ -53,7 +53,7 @@ pub(crate) fn scene(pedestrians: &[Pedestrian]) -> (Window, Forecast) {
     (window, forecast.unwrap())
 }
 
-pub(crate) fn hypotheses(pedestrians: &[Pedestrian]) -> Vec<Hypotheses> {
+pub(crate) fn hypotheses(pedestrians: &[FixturePedestrian]) -> Vec<Hypotheses> {
     let (window, forecast) = scene(pedestrians);
     (0..pedestrians.len()).map(|i| Hypotheses::of(&window, &forecast, i)).collect()
 }

@@ -5,7 +5,7 @@ use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
 use std::array;
 
 /// `[axis][t]` relative to the present position of the pedestrian, metres.
-pub(crate) type Path = [[f32; HORIZON + 1]; 2];
+pub(crate) type HypothesisPath = [[f32; HORIZON + 1]; 2];
 
 /// The paths of one pedestrian.
 #[derive(Debug, Clone)]
@@ -72,12 +72,12 @@ impl Hypotheses {
     }
 
     /// The path of hypothesis `k`.
-    pub(crate) fn path(&self, k: usize) -> Path {
+    pub(crate) fn path(&self, k: usize) -> HypothesisPath {
         [0, 1].map(|axis| array::from_fn(|t| self.at(axis, t)[k]))
     }
 
     /// The path of a mixture of the hypotheses.
-    pub(crate) fn mean(&self, shares: &[f32]) -> Path {
+    pub(crate) fn mean(&self, shares: &[f32]) -> HypothesisPath {
         let mean = |axis: usize, t: usize| self.at(axis, t).iter().zip(shares).map(|(x, share)| x * share).sum();
         [0, 1].map(|axis| array::from_fn(|t| mean(axis, t)))
     }

@@ -5,7 +5,7 @@
 //! the fewest others, the one nearest to the mean. Two who are that close already stay as they are: they collide on
 //! every path, because the present counts.
 
-use crate::hypotheses::{Hypotheses, Path, least_squared};
+use crate::hypotheses::{Hypotheses, HypothesisPath, least_squared};
 use crate::pairs::{Pair, neighbours};
 use ddl_core::HORIZON;
 use std::array;
@@ -19,9 +19,9 @@ const MARGIN: f32 = 1.05;
 /// Changes the shares of the hypotheses of each pedestrian, `[N][H]`, where paths of a pair collide.
 pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&mut [f32]]) {
     let means = people.iter().zip(shares.iter()).map(|(one, shares)| one.mean(&shares[..one.count()]));
-    let means: Vec<Path> = means.collect();
+    let means: Vec<HypothesisPath> = means.collect();
     let mut paths = means.clone();
-    let collide = |pair: &Pair, first: &Path, second: &Path| collide(people, pair, first, second);
+    let collide = |pair: &Pair, first: &HypothesisPath, second: &HypothesisPath| collide(people, pair, first, second);
     let still = [[0.0; HORIZON + 1]; 2];
     let touching = || -> Vec<bool> { pairs.iter().map(|pair| collide(pair, &still, &still)).collect() };
     let mut of_all = None;
@@ -34,7 +34,7 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
             let (partners, touch) = of_all.get_or_insert_with(|| (neighbours(people.len(), pairs), touching()));
             // Those beyond `most` are not counted: a candidate that collides as often as now is of no use. Pairs
             // that touch at the moment itself collide on every path, so they are not counted either.
-            let collisions = |i: usize, path: &Path, most: usize| {
+            let collisions = |i: usize, path: &HypothesisPath, most: usize| {
                 let with = |&&(index, other): &&(usize, usize)| {
                     let pair = &pairs[index];
                     let [first, second] = if pair.first == i { [path, &paths[other]] } else { [&paths[other], path] };
@@ -67,18 +67,18 @@ pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&m
 }
 
 /// Whether two paths of a pair come too close, from the present on.
-fn collide(people: &[Hypotheses], pair: &Pair, first: &Path, second: &Path) -> bool {
+fn collide(people: &[Hypotheses], pair: &Pair, first: &HypothesisPath, second: &HypothesisPath) -> bool {
     let apart = (MARGIN * pair.energy.near + pair.energy.radius).powi(2);
     let [from, to] = [pair.first, pair.second].map(|i| people[i].present);
     let offset = [0, 1].map(|axis| (to[axis] - from[axis]) as f32);
     let between = |axis: usize, t: usize| second[axis][t] + offset[axis] - first[axis][t];
-    let [x, y]: Path = [0, 1].map(|axis| array::from_fn(|t| between(axis, t)));
+    let [x, y]: HypothesisPath = [0, 1].map(|axis| array::from_fn(|t| between(axis, t)));
     let squared: [f32; HORIZON] = array::from_fn(|t| least_squared([x[t], y[t]], [x[t + 1], y[t + 1]]));
     squared.iter().any(|squared| *squared < apart)
 }
 
 /// Sum of the distances of two paths at all steps, metres.
-fn far(a: &Path, b: &Path) -> f32 {
+fn far(a: &HypothesisPath, b: &HypothesisPath) -> f32 {
     (0..=HORIZON).map(|t| (a[0][t] - b[0][t]).hypot(a[1][t] - b[1][t])).sum()
 }
 

@@ -35,7 +35,7 @@ impl JointMixture {
             window.len() == forecast.pedestrians() && hypotheses <= Self::MOST_HYPOTHESES,
             "a forecast of this window"
         );
-        let scene = Scene::new(window, forecast, plan, ego);
+        let scene = MixtureScene::new(window, forecast, plan, ego);
         if scene.people.len() == 1 {
             return Self::alone(forecast);
         }
@@ -115,7 +115,7 @@ fn seed(name: &PedestrianName) -> u64 {
 
 /// The pedestrians in the order of their names, which does not depend on the order of the window, and then who follows
 /// the plan.
-struct Scene {
+struct MixtureScene {
     people: Vec<Hypotheses>,
     seeds: Vec<u64>,
     pairs: Vec<Pair>,
@@ -123,7 +123,7 @@ struct Scene {
     order: Vec<usize>,
 }
 
-impl Scene {
+impl MixtureScene {
     fn new(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
         let names: Vec<PedestrianName> = (0..window.len()).map(|i| name(window, i)).collect();
         let mut order: Vec<usize> = (0..window.len()).collect();

@@ -30,9 +30,7 @@ impl Plan {
     /// within 0 to 4.8 s.
     pub fn new(points: Vec<PlanPoint>) -> Result<Self, PlanError> {
         let [first, last] = [points.first(), points.last()].map(|point| point.map(|point| point.time));
-        let (Some(first), Some(last)) = (first, last) else {
-            return Err(PlanError::Empty);
-        };
+        let (Some(first), Some(last)) = (first, last) else { return Err(PlanError::Empty) };
         for (row, point) in (1..).zip(&points) {
             let [x, y] = point.position;
             let numbers = [("time", point.time), ("x", x), ("y", y), ("radius", point.radius)];

@@ -110,8 +110,7 @@ fn means(people: &[Hypotheses], chosen: &[Vec<u8>], labels: &[usize], before: &[
 
 /// The index of the least number, the first of equal ones.
 fn least(distances: &[f32]) -> usize {
-    let least = distances.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1));
-    least.map_or(0, |(index, _)| index)
+    distances.iter().enumerate().min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(index, _)| index)
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ mod tests;
 
 use crate::{energy::Energy, error::SceneError, futures::Futures, plan::Plan};
 use course::legs;
-use crowd::{Crowd, Sweep};
+use crowd::{CrowdAtRisk, Sweep};
 use ddl_core::HORIZON;
 use quadrature::DEVIATIONS;
 pub(crate) use quadrature::probability;
@@ -102,7 +102,7 @@ impl Futures {
                 expected: "a number of metres, 0 or more",
             });
         }
-        let crowd = Crowd::new(self)?;
+        let crowd = CrowdAtRisk::new(self)?;
         let risk = |plan| self.risk(&crowd, &crowd.sweep(plan, within), &odds(plan), ego);
         Ok(plans.par_iter().map(risk).collect())
     }
@@ -113,11 +113,11 @@ impl Futures {
     /// # Errors
     /// The forecast has no spread.
     pub fn clearances(&self, plans: &[Plan]) -> Result<Vec<Clearance>, SceneError> {
-        let crowd = Crowd::new(self)?;
+        let crowd = CrowdAtRisk::new(self)?;
         Ok(plans.par_iter().map(|plan| self.clearance(&crowd, plan)).collect())
     }
 
-    fn risk(&self, crowd: &Crowd, sweep: &Sweep, odds: &[f64], ego: Option<usize>) -> Risk {
+    fn risk(&self, crowd: &CrowdAtRisk, sweep: &Sweep, odds: &[f64], ego: Option<usize>) -> Risk {
         let mut pedestrians = vec![0.0; self.pedestrians()];
         let [mut steps, mut until] = [[0.0; HORIZON]; 2];
         let near: Vec<usize> = crowd.near(sweep).into_iter().filter(|&i| Some(i) != ego).collect();
@@ -153,7 +153,7 @@ impl Futures {
         Risk { total, pedestrians, steps, until }
     }
 
-    fn clearance(&self, crowd: &Crowd, plan: &Plan) -> Clearance {
+    fn clearance(&self, crowd: &CrowdAtRisk, plan: &Plan) -> Clearance {
         let legs = legs(plan);
         let mut clearance = Clearance { nearest: 0.0, pedestrians: vec![0.0; self.pedestrians()] };
         for k in 0..self.count() {

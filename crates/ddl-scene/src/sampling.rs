@@ -60,8 +60,7 @@ fn draw(weights: &[f32], share: f32) -> u8 {
             return index;
         }
     }
-    let last = weights.iter().rposition(|weight| *weight > 0.0);
-    last.unwrap_or(0) as u8
+    weights.iter().rposition(|weight| *weight > 0.0).unwrap_or(0) as u8
 }
 
 #[cfg(test)]

@@ -72,8 +72,7 @@ fn least(a: &[Position], b: &[Position]) -> f64 {
         let pairs = path.windows(2);
         pairs.flat_map(|pair| (0..=5).map(|part| between(pair[0], pair[1], f64::from(part) / 5.0))).collect()
     };
-    let pairs = places(a).into_iter().zip(places(b));
-    pairs.map(|(p, q)| distance(p, q)).fold(f64::INFINITY, f64::min)
+    places(a).into_iter().zip(places(b)).map(|(p, q)| distance(p, q)).fold(f64::INFINITY, f64::min)
 }
 
 fn crowd() -> impl Strategy<Value = Vec<Person>> {

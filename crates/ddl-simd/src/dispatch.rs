@@ -1,10 +1,9 @@
 //! The instruction sets of the processor, and running kernels with one.
 
+use crate::simd::Kernel;
 use fearless_simd::Level;
 #[cfg(target_arch = "x86_64")]
 use fearless_simd::Simd as _;
-
-use crate::simd::Kernel;
 
 /// Instruction sets that kernels can run with.
 ///
@@ -27,8 +26,7 @@ pub enum InstructionSet {
 impl InstructionSet {
     /// All instruction sets of this machine, slowest first.
     pub fn available() -> Vec<Self> {
-        let sets = [Self::Portable, Self::Avx2, Self::Avx512].into_iter();
-        sets.filter(|&set| Dispatch::new(set).is_some()).collect()
+        [Self::Portable, Self::Avx2, Self::Avx512].into_iter().filter(|&set| Dispatch::new(set).is_some()).collect()
     }
 }
 

@@ -2,11 +2,10 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use fearless_simd::prelude::*;
-use fearless_simd::{f32x4, f32x8, f32x16, mask32x16, u32x16};
-
 use crate::exp2::exp2_each;
 use crate::lanes::{DEPTH, LANES};
+use fearless_simd::prelude::*;
+use fearless_simd::{f32x4, f32x8, f32x16, mask32x16, u32x16};
 
 /// Sixteen numbers.
 pub type Floats<S> = f32x16<S>;

@@ -3,11 +3,10 @@
 #[path = "../tests/walks/mod.rs"]
 mod walks;
 
-use std::hint::black_box;
-
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ddl_softdtw::SearchIndex;
-use walks::{Numbers, dtw_of};
+use std::hint::black_box;
+use walks::{RandomNumbers, dtw_of};
 
 fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]]) {
     let dtw = dtw_of(1.0);
@@ -23,14 +22,14 @@ fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]
 }
 
 fn pairs(criterion: &mut Criterion) {
-    let mut numbers = Numbers::seeded(1);
+    let mut numbers = RandomNumbers::seeded(1);
     pair::<2>(criterion, &numbers.pedestrian(8), &numbers.pedestrian(8));
     pair::<2>(criterion, &numbers.pedestrian(64), &numbers.pedestrian(64));
     pair::<8>(criterion, &numbers.pedestrian(256), &numbers.pedestrian(256));
 }
 
 fn search(criterion: &mut Criterion) {
-    let mut numbers = Numbers::seeded(2);
+    let mut numbers = RandomNumbers::seeded(2);
     let mut pedestrians = |count| (0..count).map(|_| numbers.pedestrian::<2>(8)).collect::<Vec<_>>();
     let (sequences, queries) = (pedestrians(4096), pedestrians(24));
     let mut group = criterion.benchmark_group("search 8x8x2");

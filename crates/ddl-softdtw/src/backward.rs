@@ -1,13 +1,12 @@
 //! The backward recursion: the expected alignment of two sequences, and the gradient from it.
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
+use crate::forward::{ForwardStep, STRETCH};
+use crate::grid::{Grid, STRIP, Slanted, Strip};
+use crate::weight::{NONE, Weight, above, lane, normalised, normalised_one, shares, splat, sums};
 use ddl_simd::{Dispatch, Kernel, Simd};
 use fearless_simd::f64x8;
 use fearless_simd::prelude::*;
-
-use crate::forward::{STRETCH, Step};
-use crate::grid::{Grid, STRIP, Slanted, Strip};
-use crate::weight::{NONE, Weight, above, lane, normalised, normalised_one, shares, splat, sums};
 
 impl<const D: usize> Grid<'_, D> {
     /// The value and its gradient with respect to the rows; not finite when they exceed the range of `f64`.
@@ -29,7 +28,7 @@ impl<const D: usize> Grid<'_, D> {
             return self.log_domain_gradient();
         }
         let mut result = (0.0, Vec::new());
-        dispatch.run(Backward(self, &mut result));
+        dispatch.run(BackwardPass(self, &mut result));
         result
     }
 
@@ -73,7 +72,7 @@ impl<const D: usize> Grid<'_, D> {
     fn retreat<S: Simd>(
         simd: S,
         strip: &Strip<D>,
-        steps: &[Step<S>],
+        steps: &[ForwardStep<S>],
         columns: &Slanted<D>,
         significand: f64,
         below: &mut [Weight],
@@ -104,9 +103,9 @@ impl<const D: usize> Grid<'_, D> {
     }
 }
 
-struct Backward<'a, 'b, const D: usize>(&'a Grid<'b, D>, &'a mut (f64, Vec<[f64; D]>));
+struct BackwardPass<'a, 'b, const D: usize>(&'a Grid<'b, D>, &'a mut (f64, Vec<[f64; D]>));
 
-impl<const D: usize> Kernel for Backward<'_, '_, D> {
+impl<const D: usize> Kernel for BackwardPass<'_, '_, D> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         *self.1 = self.0.backward(simd);

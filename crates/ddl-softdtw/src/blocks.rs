@@ -1,9 +1,8 @@
 //! Sequences in groups of sixteen, one per lane, in `f32`. They are scaled and shifted so that squared differences are
 //! in log2 units.
 
-use std::ops::Range;
-
 use ddl_simd::{LANES, Lanes};
+use std::ops::Range;
 
 /// Marks a free lane, in place of the index of a sequence.
 pub(crate) const FREE: usize = usize::MAX;
@@ -45,7 +44,7 @@ impl<const D: usize> Narrowing<D> {
     }
 }
 
-pub(crate) type Step<const D: usize> = [Lanes; D];
+pub(crate) type BlockStep<const D: usize> = [Lanes; D];
 
 /// Sequences by length, sixteen to a block.
 #[derive(Clone, Debug)]
@@ -57,7 +56,7 @@ pub(crate) struct Blocks<const D: usize> {
     pub(crate) runs: Vec<BlockRun>,
     /// The index of the sequence in each lane of each block, or [`FREE`].
     pub(crate) members: Vec<[usize; LANES]>,
-    samples: Vec<Step<D>>,
+    samples: Vec<BlockStep<D>>,
 }
 
 #[derive(Clone, Debug)]
@@ -113,7 +112,7 @@ impl<const D: usize> Blocks<D> {
     }
 
     /// The steps of a run, block by block.
-    pub(crate) fn samples(&self, run: &BlockRun) -> &[Step<D>] {
+    pub(crate) fn samples(&self, run: &BlockRun) -> &[BlockStep<D>] {
         &self.samples[run.first..][..run.blocks.len() * run.steps]
     }
 }

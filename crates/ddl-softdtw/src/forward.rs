@@ -22,11 +22,10 @@
 //! independent of each other. One row is kept between strips.
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use ddl_simd::{Dispatch, Kernel, Simd};
-
 use crate::exp2::exp2_parts;
 use crate::grid::{Grid, STRIP, Slanted, Strip};
 use crate::weight::{Cells, NONE, Weight, below, lane, normalised, normalised_one, only, splat, sums};
+use ddl_simd::{Dispatch, Kernel, Simd};
 
 /// Entries of the working memory that fit on the stack.
 const SHORT: usize = 48;
@@ -37,7 +36,7 @@ pub(crate) const STRETCH: usize = 128;
 
 /// What the backward recursion needs of a step of a strip.
 #[derive(Clone, Copy)]
-pub(crate) struct Step<S: Simd> {
+pub(crate) struct ForwardStep<S: Simd> {
     /// 2^−t of each cell.
     pub(crate) factor: Cells<S>,
     /// R of each cell.
@@ -71,7 +70,7 @@ impl<const D: usize> Grid<'_, D> {
         &self,
         simd: S,
         columns: &Slanted<D>,
-        steps: &mut Vec<Step<S>>,
+        steps: &mut Vec<ForwardStep<S>>,
     ) -> Weight {
         // Entry c + 7 is column c. A step reads entry d + 7 (column d) for its first lane and writes entry d (column d
         // − 7) from its last; seven additional entries before and after the columns serve the slanted ends of a strip.
@@ -89,7 +88,7 @@ impl<const D: usize> Grid<'_, D> {
             if RECORD {
                 let none = splat(simd, NONE);
                 let (factor, cells) = (none, none);
-                steps.resize(before + strip.end + 1 - strip.start, Step { factor, cells });
+                steps.resize(before + strip.end + 1 - strip.start, ForwardStep { factor, cells });
             }
             self.advance::<S, RECORD>(simd, &strip, columns, row, &mut steps[before..]);
             if (index + 1) % (STRETCH / STRIP) == 0 {
@@ -109,7 +108,7 @@ impl<const D: usize> Grid<'_, D> {
         strip: &Strip<D>,
         columns: &Slanted<D>,
         row: &mut [Weight],
-        steps: &mut [Step<S>],
+        steps: &mut [ForwardStep<S>],
     ) {
         let (start, end) = (strip.start, strip.end);
         let row = &mut row[..end + STRIP];
@@ -129,7 +128,7 @@ impl<const D: usize> Grid<'_, D> {
                 let up = below(simd, cells, row[d + STRIP - 1]);
                 [_, cells] = sums([diagonal, up, cells], factor);
                 if RECORD {
-                    steps[d - start] = Step { factor, cells };
+                    steps[d - start] = ForwardStep { factor, cells };
                 }
                 diagonal = up;
                 row[d] = lane(cells, STRIP - 1);

@@ -8,7 +8,7 @@ use fearless_simd::prelude::*;
 /// Number of cells computed together: neighbours on an antidiagonal, one per row.
 pub(crate) const STRIP: usize = 8;
 /// One number per row of a strip.
-pub(crate) type Lanes = [f64; STRIP];
+pub(crate) type StripLanes = [f64; STRIP];
 
 /// Exponents are exact integers while the whole parts of all t along a path sum to no more than this.
 const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
@@ -24,7 +24,7 @@ pub(crate) struct Grid<'a, const D: usize> {
 /// strip, lane l is at column d − l.
 pub(crate) struct Strip<const D: usize> {
     /// The rows' steps, component by component. Lanes above the first row repeat it.
-    pub(crate) x: [Lanes; D],
+    pub(crate) x: [StripLanes; D],
     /// First and last step in which some lane is at a column of the grid.
     pub(crate) start: usize,
     pub(crate) end: usize,
@@ -131,12 +131,12 @@ impl<const D: usize> Slanted<D> {
 
     /// The differences between the rows of a strip and the columns of its lanes in step `d`: lane l is at column d − l.
     #[inline(always)]
-    pub(crate) fn differences<S: Simd>(&self, simd: S, x: &[Lanes; D], d: usize) -> [f64x8<S>; D] {
+    pub(crate) fn differences<S: Simd>(&self, simd: S, x: &[StripLanes; D], d: usize) -> [f64x8<S>; D] {
         let from = BLOCK - 1 - d % BLOCK;
         let block = &self.0[d / BLOCK];
         let mut differences = [f64x8::splat(simd, 0.0); D];
         for k in 0..D {
-            let y: &Lanes = block[k][from..from + STRIP].first_chunk().expect("of this length");
+            let y: &StripLanes = block[k][from..from + STRIP].first_chunk().expect("of this length");
             differences[k] = f64x8::load_array_ref(simd, &x[k]) - f64x8::load_array_ref(simd, y);
         }
         differences

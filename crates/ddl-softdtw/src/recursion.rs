@@ -9,11 +9,10 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
+use crate::blocks::BlockStep;
+use crate::range::{COST_LIMIT, FUSED_FLOOR, UNFUSED_FLOOR};
 use ddl_simd::{Lanes, Simd, exp2_each};
 use fearless_simd::prelude::*;
-
-use crate::blocks::Step;
-use crate::range::{COST_LIMIT, FUSED_FLOOR, UNFUSED_FLOOR};
 
 /// Number of cells whose similarities are computed together if the compiler does not know the length of a sequence:
 /// enough independent operations to hide their latency.
@@ -35,7 +34,7 @@ pub(crate) fn load<S: Simd>(simd: S, lanes: &Lanes, part: usize) -> S::f32s {
 pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
     simd: S,
     query: &[[f32; D]],
-    block: &[Step<D>],
+    block: &[BlockStep<D>],
     part: usize,
     start: S::f32s,
     row: &mut [S::f32s],
@@ -76,7 +75,7 @@ pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
 fn similarities<S: Simd, const D: usize, const G: usize>(
     simd: S,
     step: &[f32; D],
-    block: &[Step<D>],
+    block: &[BlockStep<D>],
     first: usize,
     part: usize,
 ) -> [S::f32s; G] {

@@ -1,11 +1,10 @@
 //! Exact search for the nearest candidates in the normalised soft-DTW distance.
 
-use ddl_simd::Dispatch;
-use rayon::prelude::*;
-
 use crate::error::{SearchError, SoftDtwError};
 use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite, normalise};
+use ddl_simd::Dispatch;
+use rayon::prelude::*;
 
 /// A candidate found by a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,8 +92,7 @@ impl<const D: usize> SearchIndex<D> {
         S: AsRef<[[f64; D]]> + Sync,
     {
         // Collected first, because a parallel collect into a `Result` could return the error of any query.
-        let of_queries = queries.par_iter().map(|query| self.search(query.as_ref(), n));
-        let of_queries: Vec<_> = of_queries.collect();
+        let of_queries: Vec<_> = queries.par_iter().map(|query| self.search(query.as_ref(), n)).collect();
         let of_queries = of_queries.into_iter().enumerate();
         of_queries
             .map(|(index, neighbours)| neighbours.map_err(|source| SearchError::BatchQuery { index, source }))

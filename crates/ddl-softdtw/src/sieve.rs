@@ -2,13 +2,12 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use ddl_simd::{Dispatch, InstructionSet, Kernel, LANES, Lanes, Simd};
-use fearless_simd::prelude::*;
-
-use crate::blocks::{BlockRun, Blocks, FREE, Step};
+use crate::blocks::{BlockRun, BlockStep, Blocks, FREE};
 use crate::range::Range;
 use crate::recursion::{GROUP, load, recursion};
 use crate::select::Selection;
+use ddl_simd::{Dispatch, InstructionSet, Kernel, LANES, Lanes, Simd};
+use fearless_simd::prelude::*;
 
 /// The candidates in blocks, with the weights that normalise their scores.
 #[derive(Clone, Debug)]
@@ -88,7 +87,7 @@ impl<const D: usize> CandidateSieve<D> {
 struct CandidateSweep<'a, const D: usize> {
     query: &'a [[f32; D]],
     steps: usize,
-    samples: &'a [Step<D>],
+    samples: &'a [BlockStep<D>],
     weights: &'a [Lanes],
     members: &'a [[usize; LANES]],
     start: f32,
@@ -128,7 +127,7 @@ impl<const D: usize> CandidateSweep<'_, D> {
 
     /// Computes the scores of block `b`, and offers those that reach the threshold.
     #[inline(always)]
-    fn block<S: Simd, const G: usize>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::f32s]) {
+    fn block<S: Simd, const G: usize>(&mut self, simd: S, b: usize, block: &[BlockStep<D>], row: &mut [S::f32s]) {
         let width = <S::f32s as SimdBase<S>>::LEN;
         let mut scores = [0.0; LANES];
         let threshold = self.selection.threshold;

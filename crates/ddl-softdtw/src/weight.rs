@@ -1,12 +1,11 @@
 //! R, the sum of exp(−cost/γ) over paths: a significand and an integer exponent that never leaves its range.
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
+use crate::exp2::times_power;
+use crate::grid::STRIP;
 use ddl_simd::Simd;
 use fearless_simd::f64x8;
 use fearless_simd::prelude::*;
-
-use crate::exp2::times_power;
-use crate::grid::STRIP;
 
 /// A positive normal number and an exponent, an exact integer: the product of the number and a power of two.
 pub(crate) type Weight = [f64; 2];

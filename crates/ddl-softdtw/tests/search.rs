@@ -4,9 +4,9 @@ mod walks;
 
 use ddl_softdtw::{Neighbour, SearchIndex, SoftDtw};
 use proptest::prelude::*;
-use walks::{Numbers, dtw_of, mapped};
+use walks::{RandomNumbers, dtw_of, mapped};
 
-type Walk = walks::Track<2>;
+type Walk = walks::RandomTrack<2>;
 
 fn brute_force(dtw: SoftDtw, candidates: &[Walk], query: &Walk) -> Vec<Neighbour> {
     let evaluated =
@@ -30,7 +30,7 @@ fn compare(gamma: f64, candidates: &[Walk], queries: &[Walk], n: usize) {
 
 #[test]
 fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
-    let mut numbers = Numbers::seeded(4);
+    let mut numbers = RandomNumbers::seeded(4);
     let candidates: Vec<Walk> = (0..300).map(|_| numbers.pedestrian(8)).collect();
     let queries: Vec<Walk> = (0..4).map(|_| numbers.pedestrian(8)).collect();
     for gamma in [0.0, 1e-300, 1e-3, 0.01, 0.1, 10.0, 1e6, 1e300] {
@@ -54,7 +54,7 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
 
 #[test]
 fn threads_and_company_change_nothing() {
-    let mut numbers = Numbers::seeded(8);
+    let mut numbers = RandomNumbers::seeded(8);
     let mut candidates: Vec<Walk> = (0..900).map(|i| numbers.pedestrian(1 + i % 12)).collect();
     candidates.extend((0..900).map(|i| numbers.standing(7 + i % 2)));
     let mut queries: Vec<Walk> = (0..8).map(|i| numbers.pedestrian(3 + i)).collect();

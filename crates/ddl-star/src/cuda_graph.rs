@@ -5,7 +5,8 @@
 #![allow(unsafe_code, reason = "calls functions of libtorch by their names")]
 
 use crate::StarError;
-use crate::device::{cuda_library, no_cuda};
+use crate::device::cuda_library;
+use crate::error::CudaFault;
 use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
 use std::marker::PhantomData;
 use std::mem::ManuallyDrop;
@@ -40,7 +41,7 @@ pub(crate) struct Recorder {
 
 /// Recorded work.
 #[derive(Debug)]
-pub(crate) struct Recording {
+pub(crate) struct RecordedWork {
     functions: GraphFunctions,
     object: Box<GraphObject>,
 }
@@ -51,10 +52,10 @@ impl Recorder {
     /// # Errors
     /// [`StarError::Device`] when the loaded libraries are not those of the pinned release.
     pub(crate) fn begin() -> Result<Self, StarError> {
-        let cuda = cuda_library().ok_or_else(|| no_cuda("libtorch_cuda.so is not loaded".into()))?;
+        let cuda = cuda_library().ok_or(CudaFault::NotOpened)?;
         // SAFETY: libtorch_cuda.so depends on this library, so it is loaded already and its initialisers have run.
         let c10 = unsafe { Library::open(Some("libc10_cuda.so"), RTLD_NOW | RTLD_GLOBAL) };
-        let c10 = c10.map_err(|error| no_cuda(error.to_string()))?;
+        let c10 = c10.map_err(|error| CudaFault::OtherRelease(error.to_string()))?;
         // SAFETY: the names encode the types of the arguments, which are those of the declared functions in the headers
         // of the pinned release: `CUDAGraph(bool)`, `~CUDAGraph()`, `capture_begin(MempoolId_t,
         // cudaStreamCaptureMode)`, `capture_end()`, `replay()`, `graph_pool_handle()`, `getStreamFromPool(bool,
@@ -87,9 +88,9 @@ impl Recorder {
         }
     }
 
-    /// Records `work`, which is not done before [`Recording::replay`]. It may not wait for the card, copy from or to
+    /// Records `work`, which is not done before [`RecordedWork::replay`]. It may not wait for the card, copy from or to
     /// the processor's memory, or seed the generator; a replay draws from the generator like the work itself.
-    pub(crate) fn record<T>(&self, work: impl FnOnce() -> T) -> (Recording, T) {
+    pub(crate) fn record<T>(&self, work: impl FnOnce() -> T) -> (RecordedWork, T) {
         let functions = self.functions;
         // Leaked if the work panics: the recording is then still open.
         let mut object = ManuallyDrop::new(Box::new([0; 64]));
@@ -103,11 +104,11 @@ impl Recorder {
         // SAFETY: recording has begun.
         unsafe { (functions.end)(&raw mut **object) };
         let object = ManuallyDrop::into_inner(object);
-        (Recording { functions, object }, made)
+        (RecordedWork { functions, object }, made)
     }
 }
 
-impl Recording {
+impl RecordedWork {
     /// Does the work again, on the memory that it was recorded with: every tensor that the work read or returned must
     /// still be there.
     pub(crate) fn replay(&mut self) {
@@ -116,7 +117,7 @@ impl Recording {
     }
 }
 
-impl Drop for Recording {
+impl Drop for RecordedWork {
     fn drop(&mut self) {
         // SAFETY: constructed once, and destroyed here alone.
         unsafe { (self.functions.destroy)(&raw mut *self.object) };
@@ -125,8 +126,8 @@ impl Drop for Recording {
 
 /// # Safety
 /// `F` is the type of the function of that name.
-unsafe fn symbol<F>(library: &Library, name: &str) -> Result<libloading::os::unix::Symbol<F>, StarError> {
+unsafe fn symbol<F>(library: &Library, name: &str) -> Result<libloading::os::unix::Symbol<F>, CudaFault> {
     // SAFETY: by the caller.
     let found = unsafe { library.get(name.as_bytes()) };
-    found.map_err(|error| no_cuda(format!("{error}; training needs torch 2.11.0")))
+    found.map_err(|error| CudaFault::OtherRelease(error.to_string()))
 }

@@ -1,6 +1,7 @@
 //! The device that the network computes on. CUDA is opened if it is available.
 
 use crate::StarError;
+use crate::error::CudaFault;
 use ddl_network::DeviceChoice;
 #[cfg(target_os = "linux")]
 use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
@@ -63,28 +64,17 @@ impl Drop for OneThread {
     }
 }
 
-/// The error when CUDA cannot be used.
-pub(crate) fn no_cuda(problem: String) -> StarError {
-    StarError::Device { device: "cuda".into(), problem }
-}
-
 fn open_cuda() -> Result<(), StarError> {
-    static FOUND: OnceLock<Result<(), String>> = OnceLock::new();
-    FOUND
-        .get_or_init(|| {
-            load_cuda()?;
-            if tch::Cuda::is_available() {
-                Ok(())
-            } else {
-                Err("libtorch finds no CUDA device; check the driver, or use --device cpu".into())
-            }
-        })
-        .clone()
-        .map_err(no_cuda)
+    static FOUND: OnceLock<Result<(), CudaFault>> = OnceLock::new();
+    let found = FOUND.get_or_init(|| {
+        load_cuda()?;
+        if tch::Cuda::is_available() { Ok(()) } else { Err(CudaFault::NoCard) }
+    });
+    Ok(found.clone()?)
 }
 
 #[cfg(not(target_os = "linux"))]
-fn load_cuda() -> Result<(), String> {
+fn load_cuda() -> Result<(), CudaFault> {
     Ok(())
 }
 
@@ -98,18 +88,13 @@ pub(crate) fn cuda_library() -> Option<&'static Library> {
 }
 
 #[cfg(target_os = "linux")]
-fn load_cuda() -> Result<(), String> {
+fn load_cuda() -> Result<(), CudaFault> {
     // SAFETY: loading the library runs its initialisers, which register the CUDA backend with the libtorch in this
     // process. The library is the matching build (same release). It is opened once, before any tensor exists, and
     // never unloaded.
     #[allow(unsafe_code)]
     let library = unsafe { Library::open(Some("libtorch_cuda.so"), RTLD_NOW | RTLD_GLOBAL) };
-    let library = library.map_err(|error| {
-        format!(
-            "libtorch_cuda.so cannot be loaded ({error}); put the lib folder of a CUDA build of torch 2.11.0 on \
-             LD_LIBRARY_PATH (docs/libtorch.md), or use --device cpu"
-        )
-    })?;
+    let library = library.map_err(|error| CudaFault::NoLibrary(error.to_string()))?;
     CUDA.get_or_init(|| library);
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! Errors of this crate.
 
+use ddl_core::Setting;
 use ddl_network::NetworkError;
 
 /// Errors of `ddl-star`. A message states the fault, its place and the remedy.
@@ -10,14 +11,9 @@ pub enum StarError {
     /// error.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// The requested device is unavailable.
-    #[error("device {device}: {problem}")]
-    Device {
-        /// The requested device.
-        device: String,
-        /// The reason and the remedy.
-        problem: String,
-    },
+    /// CUDA cannot be used.
+    #[error("device cuda: {0}")]
+    Device(#[from] CudaFault),
     /// The loss or its gradient is not finite.
     #[error(
         "epoch {epoch}, batch {batch}: the {quantity} is {value}; the last good checkpoint is kept; \
@@ -63,6 +59,28 @@ pub enum StarError {
     /// libtorch reported an error.
     #[error("libtorch: {0}")]
     Torch(#[from] tch::TchError),
+}
+
+/// Why CUDA cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CudaFault {
+    /// The driver shows no card to libtorch.
+    #[error("libtorch finds no CUDA device; check the driver, or use {cpu}", cpu = Setting::Device.to("cpu"))]
+    NoCard,
+    /// libtorch's part for CUDA is not there.
+    #[error(
+        "libtorch_cuda.so cannot be loaded ({0}); put the lib folder of a CUDA build of torch 2.11.0 on \
+         LD_LIBRARY_PATH (docs/libtorch.md), or use {cpu}",
+        cpu = Setting::Device.to("cpu")
+    )]
+    NoLibrary(String),
+    /// Work is to be recorded, and CUDA was not opened.
+    #[error("libtorch_cuda.so is not loaded")]
+    NotOpened,
+    /// libtorch is of another release.
+    #[error("{0}; training needs torch 2.11.0")]
+    OtherRelease(String),
 }
 
 impl From<StarError> for NetworkError {

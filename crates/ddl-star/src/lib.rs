@@ -61,7 +61,7 @@ mod proposal;
 mod training;
 
 pub use device::{ComputeDevice, LIBTORCH_VERSION, set_threads};
-pub use error::StarError;
+pub use error::{CudaFault, StarError};
 pub use model::{Parameters, TorchBackend, TorchNetwork};
 pub use proposal::{ProposalTrainer, TorchProposals};
 pub use training::Trainer;

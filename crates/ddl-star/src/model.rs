@@ -28,7 +28,7 @@ pub(crate) use network::Layers;
 pub use network::TorchNetwork;
 pub(crate) use numbers::{arrays, tensor};
 pub use parameters::Parameters;
-pub(crate) use tensor_backend::{Engine, KernelPass};
+pub(crate) use tensor_backend::{KernelPass, TensorEngine};
 
 #[cfg(test)]
 mod published_tests;

@@ -13,9 +13,8 @@ mod trainer;
 
 #[cfg(test)]
 pub(crate) use loss::{mean_distance, mean_squared_distance};
-pub use trainer::Trainer;
-
 use std::sync::Mutex;
+pub use trainer::Trainer;
 
 /// libtorch has one generator per process: concurrent trainings take turns to draw from it.
 pub(crate) static GENERATOR: Mutex<()> = Mutex::new(());

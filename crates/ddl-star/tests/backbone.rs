@@ -74,9 +74,7 @@ fn config() -> StarConfig {
 }
 
 fn windows() -> Vec<Window> {
-    let dataset = Dataset::simulated(1);
-    let windows = dataset.recordings()[0].windows(WindowRule::Complete);
-    windows.into_iter().take(24).collect()
+    Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete).into_iter().take(24).collect()
 }
 
 fn torch(kind: Kind) -> TorchNetwork {

@@ -14,9 +14,7 @@ fn cpu() -> ComputeDevice {
 }
 
 fn windows() -> Vec<Window> {
-    let dataset = Dataset::simulated(1);
-    let windows = dataset.recordings()[0].windows(WindowRule::Complete);
-    windows.into_iter().take(24).collect()
+    Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete).into_iter().take(24).collect()
 }
 
 fn config(variant: Variant) -> StarConfig {
@@ -104,10 +102,10 @@ fn resumed(trainer: impl Fn() -> Trainer, stop: u64) -> Vec<f32> {
     first.save(&Origin::default(), &state).unwrap();
     let mut second = trainer();
     second.resume(&Origin::default(), &state).unwrap();
-    whole(second)
+    trained_to_the_end(second)
 }
 
-fn whole(mut trainer: Trainer) -> Vec<f32> {
+fn trained_to_the_end(mut trainer: Trainer) -> Vec<f32> {
     while !trainer.is_finished() {
         trainer.step().unwrap();
     }
@@ -119,11 +117,11 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
     let single_steps = || trainer(Variant::Full, 2);
     let total = single_steps().steps().total;
     assert!(total >= 4);
-    let expected = whole(single_steps());
+    let expected = trained_to_the_end(single_steps());
     for stop in [1, total / 2 + 1, total - 1] {
         assert_eq!(resumed(single_steps, stop), expected, "stopped at {stop}");
     }
     let walks = || path_trainer(2, 0.06);
     let total = walks().steps().total;
-    assert_eq!(resumed(walks, total / 2), whole(walks()));
+    assert_eq!(resumed(walks, total / 2), trained_to_the_end(walks()));
 }

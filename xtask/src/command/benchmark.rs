@@ -1,23 +1,20 @@
 //! `cargo xtask benchmark`: libtorch, the recordings and the program, then `ddl benchmark`.
 
-use std::os::unix::process::CommandExt as _;
-
-use anyhow::{Context, Result};
-use clap::Args;
-
 use super::set_up;
 use crate::process::run;
 use crate::recordings::bring_in_for;
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result};
+use clap::Args;
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct BenchmarkArguments {
     /// Options of `ddl benchmark`, such as `--profile smoke`; paths in them are relative to the checkout
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     options: Vec<String>,
 }
 
-impl Arguments {
+impl BenchmarkArguments {
     /// Replaces this process by the program, which then receives Ctrl-C and determines the exit code.
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let data = value(&self.options, "--data").map(|folder| workspace.path(folder));
@@ -26,7 +23,10 @@ impl Arguments {
         let mut cargo =
             workspace.cargo("run --release --package ddl-cli --bin ddl --features torch -- benchmark".split(' '));
         cargo.args(self.options);
-        Err(cargo.exec()).context("cargo cannot be started")
+        #[cfg(unix)]
+        return Err(std::os::unix::process::CommandExt::exec(&mut cargo)).context("cargo cannot be started");
+        #[cfg(not(unix))]
+        run(&mut cargo).context("the benchmark stopped (above)")
     }
 }
 

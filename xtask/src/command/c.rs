@@ -1,14 +1,12 @@
 //! `cargo xtask c`: the library for C and C++, installed with its headers, for `pkg-config` and `CMake`.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-
-use anyhow::{Context, Result, ensure};
-use clap::Args;
-
 use crate::debian;
 use crate::process::run;
 use crate::workspace::{Workspace, absolute};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 const CRATE: &str = "crates/ddl-c";
 /// Where the checks install.
@@ -21,13 +19,13 @@ const NATIVE: &str = "-lgcc_s -lpthread -lm -ldl -lc";
 pub(super) const PROFILE: &str = "wheel";
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct CLibraryArguments {
     /// Where to install: into its folders include and lib
     #[arg(long, value_name = "DIR")]
     prefix: PathBuf,
 }
 
-impl Arguments {
+impl CLibraryArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let prefix = absolute(&self.prefix)?;
         build(workspace, "")?;
@@ -65,7 +63,11 @@ pub(super) fn install(workspace: &Workspace, profile: &str, prefix: &Path) -> Re
     put(&built.join("libddl_c.a"), &lib.join("libddl.a"))?;
     for (link, target) in [(&soname, &file), (&"libddl.so".to_owned(), &soname)] {
         let _ = fs::remove_file(lib.join(link));
-        std::os::unix::fs::symlink(target, lib.join(link)).context("the name of the library")?;
+        #[cfg(unix)]
+        let named = std::os::unix::fs::symlink(target, lib.join(link));
+        #[cfg(not(unix))]
+        let named = fs::copy(lib.join(target), lib.join(link)).map(drop);
+        named.context("the name of the library")?;
     }
     for (template, folder) in
         [("ddl.pc", "pkgconfig"), ("ddl-config.cmake", "cmake/ddl"), ("ddl-config-version.cmake", "cmake/ddl")]
@@ -121,16 +123,16 @@ pub(super) fn check_all(workspace: &Workspace) -> Result<()> {
 }
 
 /// Name, flags of the compiler, option of `CMake`, tests that are left out.
-type Trial = [&'static str; 4];
-const RELEASED: Trial = ["released", "-O2", "-DPEOPLE=25", "none"];
-const DEVELOPMENT: Trial = ["development", "-O2", "-DPEOPLE=6", "none"];
-const SANITIZED: Trial =
+type LibraryTrial = [&'static str; 4];
+const RELEASED: LibraryTrial = ["released", "-O2", "-DPEOPLE=25", "none"];
+const DEVELOPMENT: LibraryTrial = ["development", "-O2", "-DPEOPLE=6", "none"];
+const SANITIZED: LibraryTrial =
     ["sanitized", "-g -fsanitize=address,undefined -fno-sanitize-recover=all", "-DPEOPLE=1", "allocations"];
-const WATCHED: Trial =
+const WATCHED: LibraryTrial =
     ["watched", "-g", "-DCMAKE_CROSSCOMPILING_EMULATOR=valgrind;--quiet;--error-exitcode=9", "allocations"];
 
 /// Builds the example and the tests against an installed library with `CMake`, and runs them.
-fn test(workspace: &Workspace, prefix: &Path, compiler: &str, trial: Trial) -> Result<()> {
+fn test(workspace: &Workspace, prefix: &Path, compiler: &str, trial: LibraryTrial) -> Result<()> {
     let [name, flags, option, left_out] = trial;
     let folder = prefix.join(format!("{compiler}-{name}"));
     let mut configure = workspace.program("cmake");

@@ -1,11 +1,5 @@
 //! `cargo xtask ci`: all checks, cheapest first, tests last. `cargo xtask check`: the quick ones.
 
-use std::path::Path;
-use std::thread;
-use std::time::Instant;
-
-use anyhow::{Context, Result, ensure};
-
 use super::{benchmark, c, docs, python, set_up, test};
 use crate::browser;
 use crate::process::{read, run as run_command};
@@ -13,13 +7,17 @@ use crate::recordings;
 use crate::tidy;
 use crate::tools::Tools;
 use crate::workspace::Workspace;
+use anyhow::{Context, Result, ensure};
+use std::path::Path;
+use std::thread;
+use std::time::Instant;
 
-type Check = (&'static str, fn(&Workspace) -> Result<()>);
+type NamedCheck = (&'static str, fn(&Workspace) -> Result<()>);
 
 /// The features of everything that is built here.
 const FEATURES: &str = "ddl-cli/torch,ddl-tests/torch";
 
-const CHECKS: [Check; 11] = [
+const CHECKS: [NamedCheck; 11] = [
     ("text", text),
     ("libtorch, recordings, browser, Python packages", bring_all_in),
     ("dependencies and packages", dependencies),
@@ -31,7 +29,7 @@ const CHECKS: [Check; 11] = [
     ("Python package", python::check),
     ("library for C and C++", c::check),
     // The tests are last, so that their results are at the end of the log.
-    ("tests", |workspace| test::Arguments::default().run(workspace)),
+    ("tests", |workspace| test::TestArguments::default().run(workspace)),
 ];
 
 pub(super) fn run(workspace: &Workspace) -> Result<()> {
@@ -51,14 +49,17 @@ pub(super) fn check(workspace: &Workspace) -> Result<()> {
     lints(workspace, "ddl-cli/torch,ddl-tests/torch,ddl-cli/doc-only")
 }
 
-/// Format, spelling, rules of this repository, and links between its files.
+/// Format, spelling, rules of this repository, workflows, and links between its files.
 fn text(workspace: &Workspace) -> Result<()> {
     run_command(&mut workspace.cargo(["fmt", "--all", "--check"])).context("run `cargo fmt --all`")?;
     tidy::run(workspace)?;
     let tools = Tools::ensure(workspace)?;
-    for [program, arguments] in
-        [["ruff", "format --check --quiet"], ["ruff", "check --quiet"], ["typos", "--format brief"]]
-    {
+    for [program, arguments] in [
+        ["ruff", "format --check --quiet"],
+        ["ruff", "check --quiet"],
+        ["typos", "--format brief"],
+        ["zizmor", "--offline --quiet --strict-collection .github"],
+    ] {
         run_command(tools.program(workspace, program).args(arguments.split(' ')))?;
     }
     let files = workspace.files()?;

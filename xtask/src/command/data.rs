@@ -1,15 +1,13 @@
 //! `cargo xtask data`: find, fetch and verify the recordings.
 
-use std::path::PathBuf;
-
-use anyhow::{Result, ensure};
-use clap::{Args, ValueEnum};
-
 use crate::recordings::{Manifest, RECORDED, SIMULATED};
 use crate::workspace::Workspace;
+use anyhow::{Result, ensure};
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct DataArguments {
     /// Action on the recordings
     action: Action,
     /// Only this convention: star or social-gan
@@ -30,7 +28,7 @@ enum Action {
     Where,
 }
 
-impl Arguments {
+impl DataArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let (asked, data) = (self.convention.as_deref(), self.data.as_deref());
         if asked == Some(SIMULATED) {

@@ -1,15 +1,13 @@
 //! `cargo xtask docs`: the guide (mdBook) and the interface of every crate (rustdoc), as one site. It can be opened
 //! from the file system or served as it is; it loads nothing from a network.
 
-use std::fs;
-use std::path::Path;
-
-use anyhow::{Context, Result, ensure};
-
 use crate::cache::write_file;
 use crate::process::{run as run_command, shown};
 use crate::tools::Tools;
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result, ensure};
+use std::fs;
+use std::path::Path;
 
 const BOOK: &str = "docs";
 pub(super) const SITE: &str = "target/site";

@@ -1,35 +1,33 @@
 //! `cargo xtask nightly`: what takes too long for `ci`. docs/reliability.md says when each was run, and its figures.
 
-use std::fs;
-use std::process::Command;
-use std::time::{Instant, SystemTime, UNIX_EPOCH};
-
-use anyhow::{Result, ensure};
-use clap::{Args, ValueEnum};
-
 use super::{c, docs, python, release, set_up, test, web};
 use crate::browser;
 use crate::debian;
-use crate::libtorch::{self, Request};
+use crate::libtorch::{self, LibtorchRequest};
 use crate::process::{read, run};
 use crate::recordings::bring_in;
 use crate::tools::cargo_tool;
 use crate::workspace::Workspace;
+use anyhow::{Result, ensure};
+use clap::{Args, ValueEnum};
+use std::fs;
+use std::process::Command;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
 /// Size of a sample of mutants, of 17,000.
 const MUTANTS: usize = 120;
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct NightlyArguments {
     /// The check [default: list them]
-    name: Option<Check>,
+    name: Option<NightlyCheck>,
     /// Words for the check
     #[arg(last = true, requires = "name")]
     rest: Vec<String>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Check {
+enum NightlyCheck {
     /// Killed processes, full disks, damaged files, large crowds (-- NAME of a test)
     Faults,
     /// Every reader of untrusted input (-- TARGET...; RUNS=10000000, SANITIZER=none)
@@ -56,20 +54,20 @@ enum Check {
     All,
 }
 
-impl Arguments {
+impl NightlyArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        let checks = Check::value_variants();
+        let checks = NightlyCheck::value_variants();
         let Some(asked) = self.name else {
-            for value in checks.iter().filter_map(Check::to_possible_value) {
+            for value in checks.iter().filter_map(NightlyCheck::to_possible_value) {
                 let help = value.get_help().cloned().unwrap_or_default();
                 println!("{:<10} {help}", value.get_name());
             }
             return Ok(());
         };
-        let is_one = asked != Check::All;
+        let is_one = asked != NightlyCheck::All;
         ensure!(is_one || self.rest.is_empty(), "words are for one check: name it instead of all");
         let mut failed = Vec::new();
-        let is_asked = |check: &&Check| asked == **check || asked == Check::All && **check != asked;
+        let is_asked = |check: &&NightlyCheck| asked == **check || asked == NightlyCheck::All && **check != asked;
         for check in checks.iter().filter(is_asked) {
             let start = Instant::now();
             let outcome = check.run(workspace, &self.rest);
@@ -82,7 +80,7 @@ impl Arguments {
     }
 }
 
-impl Check {
+impl NightlyCheck {
     fn run(self, workspace: &Workspace, words: &[String]) -> Result<()> {
         match self {
             Self::Faults => faults(workspace, words),
@@ -90,8 +88,8 @@ impl Check {
             Self::Mutants => mutants(workspace, words),
             Self::Cluster => cluster(workspace, words),
             Self::Sanitizer => sanitizer(workspace, words),
-            Self::Release => release::Arguments { dry_run: true }.run(workspace),
-            Self::Wheel => python::Arguments::default().run(workspace),
+            Self::Release => release::ReleaseArguments { dry_run: true }.run(workspace),
+            Self::Wheel => python::PythonArguments::default().run(workspace),
             Self::Node => python::check_node_for_long(workspace),
             Self::C => c::check_all(workspace),
             Self::Site => {
@@ -118,7 +116,7 @@ fn faults(workspace: &Workspace, words: &[String]) -> Result<()> {
 
 fn fuzz(workspace: &Workspace, words: &[String]) -> Result<()> {
     let fuzz = cargo_tool(workspace, "cargo-fuzz", "0.13.2")?;
-    let libtorch = libtorch::ensure(workspace, &Request::default())?.folder.join("lib");
+    let libtorch = libtorch::ensure(workspace, &LibtorchRequest::default())?.folder.join("lib");
     let mut script = workspace.program("bash");
     script.arg("tests/fuzz/run.sh").args(words);
     run(script.env("CARGO_FUZZ", fuzz).env("LD_LIBRARY_PATH", libtorch))
@@ -142,9 +140,7 @@ fn mutants(workspace: &Workspace, words: &[String]) -> Result<()> {
     };
     let words = if words.is_empty() { sample(&mut mutants(&["--list".to_owned()]))? } else { words.to_vec() };
     println!("cargo xtask nightly mutants -- {}", words.join(" "));
-    let Err(failure) = run(&mut mutants(&words)) else {
-        return Ok(());
-    };
+    let Err(failure) = run(&mut mutants(&words)) else { return Ok(()) };
     let missed = fs::read_to_string(workspace.path("target/mutants.out/missed.txt")).unwrap_or_default();
     ensure!(!missed.is_empty(), failure);
     // Names as regular expressions, whose special characters stand for themselves among others.

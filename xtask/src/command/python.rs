@@ -1,17 +1,15 @@
 //! `cargo xtask python`: the wheel of the Python package, tested in a virtual environment.
 
-use std::ffi::OsStr;
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-
-use anyhow::{Context, Result, ensure};
-use clap::Args;
-
 use crate::debian;
 use crate::process::{read, run};
 use crate::python::Python;
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 
 /// Pinned packages of the test environment, besides the wheel.
 const REQUIREMENTS: &str = "crates/ddl-python/tests/requirements.txt";
@@ -22,7 +20,7 @@ const ENVIRONMENT: &str = "target/python/environment";
 const LARGEST: u64 = 14_000_000;
 
 #[derive(Debug, Default, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct PythonArguments {
     /// Only build the wheel
     #[arg(long)]
     no_tests: bool,
@@ -31,7 +29,7 @@ pub(crate) struct Arguments {
     rest: Vec<String>,
 }
 
-impl Arguments {
+impl PythonArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         make_environment(workspace)?;
         let wheel = build(workspace)?;

@@ -1,13 +1,5 @@
 //! `cargo xtask release`: everything that a version consists of, built and checked; to publish it, a person has keys.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Instant;
-
-use anyhow::{Context, Result, ensure};
-use clap::Args;
-
 use super::{c, set_up, web};
 use crate::cache::{self, sha256};
 use crate::debian;
@@ -15,6 +7,12 @@ use crate::process::{read, run};
 use crate::rust_target;
 use crate::tools::{Tools, cargo_tool};
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 /// The folder of the files of a release.
@@ -27,14 +25,14 @@ const OLDEST_GLIBC: &str = "2.17";
 const LISTED: [&str; 4] = ["ddl-cli", "ddl-python", "ddl-c", "ddl-web"];
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct ReleaseArguments {
     /// Build and check everything, and publish nothing
     #[arg(long)]
     pub(super) dry_run: bool,
 }
 
-type Step = (&'static str, fn(&Workspace, &Path) -> Result<()>);
-const STEPS: [Step; 7] = [
+type ReleaseStep = (&'static str, fn(&Workspace, &Path) -> Result<()>);
+const STEPS: [ReleaseStep; 7] = [
     ("crates", crates),
     ("wheels", wheels),
     ("npm package", npm_package),
@@ -44,7 +42,7 @@ const STEPS: [Step; 7] = [
     ("checksums", checksums),
 ];
 
-impl Arguments {
+impl ReleaseArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let notes = notes(&fs::read_to_string(workspace.path("CHANGELOG.md"))?, self.dry_run)?;
         let status = read(workspace.program("git").args(["status", "--porcelain"]))?;

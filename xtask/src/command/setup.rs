@@ -1,24 +1,23 @@
-//! `cargo xtask setup`: libtorch, and cargo's configuration for it.
+//! `cargo xtask setup`: libtorch, cargo's configuration for it, and the hook of git.
 
-use std::time::Instant;
-
+use super::hook;
+use crate::libtorch::{self, LibtorchRequest};
+use crate::workspace::Workspace;
 use anyhow::Result;
 use clap::Args;
-
-use crate::libtorch::{self, Request};
-use crate::workspace::Workspace;
+use std::time::Instant;
 
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct SetupArguments {
     #[command(flatten)]
-    request: Request,
+    request: LibtorchRequest,
     /// Print shell lines that set libtorch's variables, for tools that do not use cargo's configuration:
     /// `eval "$(cargo xtask setup --env)"`
     #[arg(long)]
     env: bool,
 }
 
-impl Arguments {
+impl SetupArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let start = Instant::now();
         let ready = libtorch::ensure(workspace, &self.request)?;
@@ -37,6 +36,7 @@ impl Arguments {
         );
         let written = if ready.reconfigured { "written" } else { "up to date" };
         println!("cargo configuration: .cargo/config.generated.toml {written}");
+        println!("{}", hook::install(workspace)?);
         Ok(())
     }
 }

@@ -3,13 +3,12 @@
 //! Every build here selects the whole workspace with its tests, so that cargo chooses one set of features for the
 //! dependencies and compiles each crate once. Only what depends on the feature `torch` is compiled twice.
 
-use anyhow::Result;
-use clap::Args;
-
 use super::set_up;
 use crate::process::run;
 use crate::recordings::bring_in;
 use crate::workspace::Workspace;
+use anyhow::Result;
+use clap::Args;
 
 /// Everything that can be built without the feature `torch`.
 const PLAIN: &str = "--workspace --lib --bins --examples --tests";
@@ -18,7 +17,7 @@ const TORCH: &str = "--workspace --features ddl-cli/torch,ddl-tests/torch";
 const TORCH_TESTS: &str = "--test it_torch";
 
 #[derive(Debug, Default, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct TestArguments {
     /// Only tests that need no libtorch; nothing is set up
     #[arg(long)]
     no_torch: bool,
@@ -27,7 +26,7 @@ pub(crate) struct Arguments {
     rest: Vec<String>,
 }
 
-impl Arguments {
+impl TestArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         if !self.no_torch {
             set_up(workspace)?;

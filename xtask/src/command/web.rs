@@ -1,17 +1,15 @@
 //! `cargo xtask web`: the forecaster as WebAssembly, in a page of one file and in an npm package.
 
-use std::fs;
-use std::path::Path;
-
-use anyhow::{Context, Result};
-use clap::Args;
-
 use crate::browser;
 use crate::debian;
 use crate::process::run;
 use crate::rust_target;
 use crate::tools::Tools;
 use crate::workspace::{Workspace, remove_folder};
+use anyhow::{Context, Result};
+use clap::Args;
+use std::fs;
+use std::path::Path;
 
 /// The folder of page and package.
 const MADE: &str = "target/web";
@@ -23,13 +21,13 @@ const BUILT: &str = "target/wasm";
 const PACKAGES: [&str; 2] = ["typescript@5.9.3", "@types/node@22.20.5"];
 
 #[derive(Debug, Default, Args)]
-pub(crate) struct Arguments {
+pub(crate) struct WebArguments {
     /// Also test both: the page in a browser, the package in node
     #[arg(long)]
     test: bool,
 }
 
-impl Arguments {
+impl WebArguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         build(workspace)?;
         if self.test {

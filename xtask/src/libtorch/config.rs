@@ -1,12 +1,10 @@
 //! The generated cargo configuration, which `.cargo/config.toml` includes: the folder of libtorch, and the path to its
 //! libraries.
 
+use crate::cache::write_file;
+use anyhow::{Result, bail};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-use anyhow::{Result, bail};
-
-use crate::cache::write_file;
 
 /// Relative to the workspace root; git ignores it.
 pub(super) const GENERATED: &str = ".cargo/config.generated.toml";

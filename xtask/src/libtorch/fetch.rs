@@ -1,13 +1,11 @@
 //! Fetches libtorch as pinned wheels, completely or not at all.
 
-use std::fs;
-use std::path::Path;
-
-use anyhow::{Context, Result, ensure};
-
 use super::VERSION;
 use crate::process::run;
 use crate::python::Python;
+use anyhow::{Context, Result, ensure};
+use std::fs;
+use std::path::Path;
 
 /// The wheels and their SHA-256 sums, which pip checks.
 const REQUIREMENTS: &str = include_str!("../../libtorch.txt");

@@ -1,12 +1,10 @@
 //! Checks whether a folder holds the libtorch version of this workspace.
 
+use super::VERSION;
+use anyhow::{Context, Result, ensure};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
 use std::path::Path;
-
-use anyhow::{Context, Result, ensure};
-
-use super::VERSION;
 
 /// A header that exists only in a libtorch with its C++ interface.
 const HEADER: &str = "include/torch/csrc/api/include/torch/torch.h";

@@ -7,7 +7,7 @@ const ONE: &[u8] = b"1,2,3\n1,1,1\n0.5,0.6,0.7\n8.1,8.2,8.3\n";
 const TWO: &[u8] = b"6,12,18\n2,2,2\n1.5,1.6,1.7\n9.1,9.2,9.3\n";
 
 /// Two files, and sources in this folder. Each source has the first file and, if given, these bytes as the second.
-fn entry(folder: &Path, seconds: &[Option<&[u8]>]) -> Entry {
+fn entry(folder: &Path, seconds: &[Option<&[u8]>]) -> ConventionFiles {
     let mut parts = vec!["description = ''\nterms = ''\ncite = []\n".to_owned()];
     for (index, second) in seconds.iter().enumerate() {
         let source = folder.join(format!("source {index}"));

@@ -1,7 +1,5 @@
 //! The published scheme: plain Euler steps.
 
-use nalgebra::SVector;
-
 use super::Integrator;
 use crate::{
     error::{DynamicsError, ensure_finite, ensure_time_step},
@@ -10,6 +8,7 @@ use crate::{
     real::Real,
     state::State,
 };
+use nalgebra::SVector;
 
 /// The plain Euler step `p' = p + dt v`: the published scheme, kept for reproduction.
 ///

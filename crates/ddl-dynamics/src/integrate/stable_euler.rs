@@ -1,7 +1,5 @@
 //! Euler steps that keep the stability guarantee.
 
-use nalgebra::SVector;
-
 use super::Integrator;
 use crate::{
     attractor::Attractor,
@@ -12,6 +10,7 @@ use crate::{
     real::Real,
     state::State,
 };
+use nalgebra::SVector;
 
 /// A step to the closest point that ends within this many rounding errors of the goal is moved onto the goal, because
 /// the rest is rounding.

@@ -1,10 +1,9 @@
 //! One step of a certificate: its quantities and their check.
 
-use nalgebra::SVector;
-use serde::{Deserialize, Serialize};
-
 use super::Violation;
 use crate::{attractor::Attractor, metric::CholeskyMetric, polar::polar, real::Real};
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
 
 /// The evidence of one step, from position `k` to position `k + 1`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

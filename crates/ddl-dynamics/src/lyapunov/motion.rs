@@ -1,10 +1,9 @@
 //! Motion quantities of a certificate: speed, change of speed, deviation from the straight line, and final distance.
 
-use nalgebra::SVector;
-use serde::{Deserialize, Serialize};
-
 use crate::lyapunov::Violation;
 use crate::{attractor::Attractor, motion_bounds::MotionBounds, real::Real};
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
 
 /// Relative tolerance of a bound for rounding.
 const ROUNDING: f64 = 1e-9;
@@ -104,9 +103,7 @@ fn out_of_reach<T: Real>(path: &[SVector<T, 2>], attractor: &Attractor<T, 2>, bo
 /// The largest distance of a position from the line through the first position and the goal. If both are equal, the
 /// largest distance from the goal.
 fn farthest_from_line<T: Real>(path: &[SVector<T, 2>], goal: &SVector<T, 2>) -> T {
-    let Some(start) = path.first() else {
-        return T::zero();
-    };
+    let Some(start) = path.first() else { return T::zero() };
     let axis = (goal - start).try_normalize(T::zero());
     let off = |p: &SVector<T, 2>| {
         let way = p - start;

@@ -1,5 +1,9 @@
 //! Certificates hold for every stable rollout, and name the step that violates the guarantee.
 
+use crate::{
+    draw::{METRICS, SceneDraw},
+    for_every_space,
+};
 use approx::assert_relative_eq;
 use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate, NaturalGradientFlow, PUBLISHED_SIGMA, Real,
@@ -7,11 +11,6 @@ use ddl_dynamics::{
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
-
-use crate::{
-    draw::{METRICS, SceneDraw},
-    for_every_space,
-};
 
 fn stable_path<T: Real, const D: usize>(
     scene: &SceneDraw,

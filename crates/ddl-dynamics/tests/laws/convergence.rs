@@ -1,13 +1,12 @@
 //! The goal is reached within a proved number of steps.
 
-use ddl_dynamics::{Attractor, CholeskyMetric, NaturalGradientFlow, Real, StableEuler, State, rollout};
-use nalgebra::{SVector, Vector2};
-use proptest::{prelude::*, test_runner::TestCaseResult};
-
 use crate::{
     draw::{SceneDraw, deviation_sine},
     for_every_space,
 };
+use ddl_dynamics::{Attractor, CholeskyMetric, NaturalGradientFlow, Real, StableEuler, State, rollout};
+use nalgebra::{SVector, Vector2};
+use proptest::{prelude::*, test_runner::TestCaseResult};
 
 /// `Phi <= tolerance` after `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps.
 fn arrives_within_the_proved_number_of_steps<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {

@@ -1,18 +1,15 @@
 //! `P` is symmetric and positive definite, and applied like the formed matrix.
 
-use ddl_dynamics::{CholeskyMetric, Real};
-use nalgebra::DMatrix;
-use proptest::{prelude::*, test_runner::TestCaseResult};
-
 use crate::{
     draw::{SceneDraw, formed},
     for_every_space,
 };
+use ddl_dynamics::{CholeskyMetric, Real};
+use nalgebra::DMatrix;
+use proptest::{prelude::*, test_runner::TestCaseResult};
 
 fn applied_as_formed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
-    let Some(u) = scene.unit::<T, D>() else {
-        return Ok(());
-    };
+    let Some(u) = scene.unit::<T, D>() else { return Ok(()) };
     let u64 = u.map(Real::as_f64);
     for metric in scene.metrics::<T, D>() {
         let p = formed(&metric);

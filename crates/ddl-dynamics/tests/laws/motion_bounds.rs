@@ -1,13 +1,12 @@
 //! Motions within bounds: limited speed, nearer to the goal at every step, never past it, and on it with the last step.
 
+use crate::draw::{METRICS, SceneDraw, any_scene, deviation_sine, formed};
 use ddl_dynamics::{
     Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Real, StableEuler, StepTime,
     arriving_schedule, rollout,
 };
 use nalgebra::Vector2;
 use proptest::{prelude::*, test_runner::TestCaseResult};
-
-use crate::draw::{METRICS, SceneDraw, any_scene, deviation_sine, formed};
 
 /// Top speed relative to the required speed, share of the metric, seconds per step, own velocity in top speeds, and
 /// whether metrics are in m/s.
@@ -26,9 +25,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
     let arriving = attractor.distance(&start) / (dt * T::rounded(METRICS as f64));
     let top_speed = (arriving * T::rounded(spare)).max(T::rounded(1e-3));
     let velocity = Vector2::from(velocity).map(T::rounded) * top_speed;
-    let Some(bounds) = MotionBounds::new(top_speed, velocity, T::rounded(share)) else {
-        return Ok(());
-    };
+    let Some(bounds) = MotionBounds::new(top_speed, velocity, T::rounded(share)) else { return Ok(()) };
     let bounds = if absolute { bounds.absolute() } else { bounds };
     let schedule = arriving_schedule(scene.metrics(), attractor, bounds, dt).unwrap();
     let flow = NaturalGradientFlow::new(attractor, schedule);

@@ -1,16 +1,15 @@
 //! `StableEuler` lowers the distance to the goal at every step, for every input.
 
+use crate::{
+    draw::{METRICS, SceneDraw, at},
+    for_every_space,
+};
 use ddl_dynamics::{
     Attractor, CholeskyMetric, Euler, Integrator, LyapunovCertificate, NaturalGradientFlow, Real, StableEuler, State,
     rollout,
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
-
-use crate::{
-    draw::{METRICS, SceneDraw, at},
-    for_every_space,
-};
 
 fn at_the_goal_nothing_moves<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();

@@ -2,10 +2,9 @@
 //! frame") evaluated in numpy outside this project. `reference/analogues.json` has a library of eight tracks and the
 //! results for two pedestrians: one that walks and turns, and one with steps below 0.2 m.
 
+use crate::tracks::{Positions, distance, estimator, walk};
 use ddl_goal::{GoalEstimator, GoalEstimatorParams};
 use serde::Deserialize;
-
-use crate::tracks::{Positions, distance, estimator, walk};
 
 /// x = a t + b t², y = c t + d t² (m), t counting steps.
 type Coefficients = [f64; 4];
@@ -103,8 +102,7 @@ fn equal_analogues_weigh_the_same() {
 fn the_nearest_hundred_experts_are_kept() {
     let tracks = (0..300_u32).map(|i| walk(0.005 * f64::from(i), 0.1, 0.01));
     let params = GoalEstimatorParams { experts: 250, ..Default::default() };
-    let set = estimator(params, tracks.collect()).estimate(&walk(1.0, 0.1, 0.01));
-    let set = set.unwrap();
+    let set = estimator(params, tracks.collect()).estimate(&walk(1.0, 0.1, 0.01)).unwrap();
     assert_eq!(set.experts().len(), 100);
     let experts = set.experts();
     assert!(experts.is_sorted_by(|a, b| a.distance <= b.distance));

@@ -1,9 +1,8 @@
 //! The estimator on synthetic pedestrians: what it reads, what it depends on, what it returns.
 
+use crate::tracks::{self, Positions, distance, walk};
 use ddl_goal::{ExpertLibrary, GoalError, GoalEstimator, GoalEstimatorParams, QuerySpan, TrackError};
 use proptest::prelude::*;
-
-use crate::tracks::{self, Positions, distance, walk};
 
 fn library() -> Vec<Positions> {
     let track = |i: u32| {
@@ -123,8 +122,7 @@ fn results_do_not_depend_on_batches_or_threads() {
         let estimator = estimator(params);
         let alone: Vec<_> = tracks.iter().map(|track| estimator.estimate(track).unwrap()).collect();
         for threads in [1, 3] {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-            let pool = pool.build().unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let batch = |slices: &[&[[f64; 2]]]| pool.install(|| estimator.estimate_batch(slices)).unwrap();
             let mut slices: Vec<&[[f64; 2]]> = tracks.iter().map(Vec::as_slice).collect();
             assert_eq!(batch(&slices), alone);

@@ -1,9 +1,8 @@
 //! Goals from given endpoints.
 
+use crate::tracks::distance;
 use ddl_goal::{GoalSet, HeadingFrame};
 use proptest::prelude::*;
-
-use crate::tracks::distance;
 
 fn frame() -> HeadingFrame {
     HeadingFrame::new(&[[3.0, -1.0], [3.4, -0.7], [3.8, -0.4]]).unwrap()

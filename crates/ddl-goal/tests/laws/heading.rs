@@ -1,9 +1,8 @@
 //! The heading frame under rotation, translation and mirroring of the scene.
 
+use crate::tracks::{Positions, distance};
 use ddl_goal::{HeadingFrame, TrackError};
 use proptest::prelude::*;
-
-use crate::tracks::{Positions, distance};
 
 /// 8 positions of a pedestrian with steps of up to 0.8 m.
 fn observed() -> impl Strategy<Value = Positions> {

@@ -1,13 +1,11 @@
 //! The published estimator on the real recordings, against the results of its own code.
 
-use std::collections::BTreeMap;
-
+use crate::tracks::{distance, estimator};
 use ddl_core::Window;
 use ddl_data::{Convention, Dataset, Recording, WindowRule, locate};
 use ddl_goal::{Expert, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use serde::Deserialize;
-
-use crate::tracks::{distance, estimator};
+use std::collections::BTreeMap;
 
 #[derive(Deserialize)]
 struct PublishedGoals {
@@ -34,8 +32,7 @@ fn goal_error(goals: &GoalSet, track: &[[f64; 2]]) -> f64 {
 
 fn mean_error(estimator: &GoalEstimator, queries: &[&[[f64; 2]]], tracks: &[Vec<[f64; 2]>]) -> f64 {
     let estimated = estimator.estimate_batch(queries).unwrap();
-    let errors = estimated.iter().zip(tracks).map(|(goals, track)| goal_error(goals, track));
-    errors.sum::<f64>() / tracks.len() as f64
+    estimated.iter().zip(tracks).map(|(goals, track)| goal_error(goals, track)).sum::<f64>() / tracks.len() as f64
 }
 
 /// The recordings, or `None` (with the reason printed) where they may be absent.
@@ -66,9 +63,7 @@ fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEst
 #[test]
 fn expert_distances_are_the_published_ones() {
     const FURTHER: usize = 8;
-    let Some(dataset) = recordings() else {
-        return;
-    };
+    let Some(dataset) = recordings() else { return };
     let reference: PublishedGoals =
         serde_json::from_str(include_str!("reference/goals.json")).expect("the fixture is JSON");
     assert_eq!(reference.pedestrians.len(), 100);
@@ -107,9 +102,7 @@ fn expert_distances_are_the_published_ones() {
 
 #[test]
 fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
-    let Some(dataset) = recordings() else {
-        return;
-    };
+    let Some(dataset) = recordings() else { return };
     let estimator = published(&dataset, "eth", 100);
     let windows = windows(&dataset, "eth", WindowRule::Published).into_values();
     let windows: Vec<_> = windows.collect();
@@ -123,9 +116,7 @@ fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
 /// The library and the pedestrians are from recordings of different streets: students, and shoppers elsewhere.
 #[test]
 fn the_heading_frame_transfers_between_streets() {
-    let Some(dataset) = recordings() else {
-        return;
-    };
+    let Some(dataset) = recordings() else { return };
     let tracks = |name| windows(&dataset, name, WindowRule::Complete).into_values();
     let library: Vec<_> = tracks("students003").collect();
     let pedestrians: Vec<_> = tracks("zara03").step_by(5).collect();

@@ -159,9 +159,7 @@ fn paths<T: Copy + Send + Sync>(
     (hypotheses, pedestrians): (usize, usize),
     changed: impl Fn(T) -> T + Sync,
 ) -> Vec<T> {
-    let Some(&any) = steps.first() else {
-        return Vec::new();
-    };
+    let Some(&any) = steps.first() else { return Vec::new() };
     let of_row = hypotheses * HORIZON;
     let mut paths = vec![any; rows.len() * of_row];
     let rows = paths.par_chunks_mut(of_row).zip(rows).with_min_len(64);
@@ -210,9 +208,7 @@ fn relative(position: Position, origin: Position) -> Position {
 }
 
 fn check_shares(windows: &[Window], shares: Option<&[Vec<f64>]>) -> Result<(), NetworkError> {
-    let Some(shares) = shares else {
-        return Ok(());
-    };
+    let Some(shares) = shares else { return Ok(()) };
     let fault = |got: String| {
         let windows = windows.len();
         let expected = format!("a share from 0 to 1 for every pedestrian of {windows} windows");

@@ -300,8 +300,7 @@ mod tests {
     impl Kernel for Usual<'_> {
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) {
-            let row = [1.0, 2.0, 4.0, -1.5, 1.1, 0.2, 0.9, 0.8, -0.3, 2.15, 0.6];
-            let row = row.map(|number| Lanes([number; LANES]));
+            let row = [1.0, 2.0, 4.0, -1.5, 1.1, 0.2, 0.9, 0.8, -0.3, 2.15, 0.6].map(|number| Lanes([number; LANES]));
             *self.1 = step(simd, &row, (1e-8, self.0), &mut [Lanes::ZERO; 2]);
         }
     }

@@ -13,9 +13,7 @@ use nalgebra::Vector2;
 pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> MotionBounds<f64> {
     let points: Vec<Vector2<f64>> = observed.iter().map(|&p| p.into()).collect();
     let steps: Vec<Vector2<f64>> = points.array_windows().map(|[a, b]| b - a).collect();
-    let Some(&last) = steps.last() else {
-        return MotionBounds::default();
-    };
+    let Some(&last) = steps.last() else { return MotionBounds::default() };
     let fastest = steps.iter().map(Vector2::norm).fold(0.0, f64::max) / time_step;
     let changes = steps.array_windows().map(|[a, b]| (b - a).norm());
     let tremble = changes.clone().sum::<f64>() / changes.len().max(1) as f64;

@@ -3,10 +3,7 @@
 use crate::backbone::{Backbone, Perceptron, Star};
 use crate::backend::{KernelBackend, Kernels};
 use crate::config::BackboneKind;
-use crate::forecast::batch::{BatchRollout, ForecastBatch};
 use crate::forecast::emission::NoiseSpread;
-use crate::forecast::forecast_windows::ForecastWindows;
-use crate::forecast::pass::Pass;
 use crate::weights::{Layout, Linear, Weights};
 use crate::{NetworkError, StarConfig};
 use std::sync::Arc;
@@ -18,7 +15,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub struct MotionNetwork {
     pub(super) config: StarConfig,
-    weights: Weights,
+    pub(super) weights: Weights,
     pub(super) kernels: Arc<Kernels>,
     pub(super) backbone: Box<dyn Backbone<KernelBackend>>,
     pub(super) output: Linear,
@@ -79,19 +76,5 @@ impl MotionNetwork {
             backbone: Box::new(backbone),
             output,
         })
-    }
-}
-
-impl ForecastWindows for MotionNetwork {
-    fn config(&self) -> &StarConfig {
-        &self.config
-    }
-
-    fn copy_weights(&self) -> Result<Weights, NetworkError> {
-        Ok(self.weights.clone())
-    }
-
-    fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
-        Ok(Pass::new(self, batch).roll_out())
     }
 }

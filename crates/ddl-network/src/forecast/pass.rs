@@ -2,9 +2,12 @@
 
 use crate::backend::{Backend as _, Buffer, KernelBackend, Memory, Rows};
 use crate::forecast::batch::{BatchRollout, ForecastBatch};
+use crate::forecast::forecast_windows::ForecastWindows;
 use crate::forecast::network::MotionNetwork;
 use crate::forecast::rollout_state::{ObservedSteps, RolloutState};
 use crate::kernel::KeepBuffers;
+use crate::weights::Weights;
+use crate::{NetworkError, StarConfig};
 use ddl_core::{HORIZON, OBSERVED};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -16,7 +19,7 @@ use std::sync::Arc;
 const ROWS_AT_ONCE: usize = 128;
 
 /// The data that all hypotheses of a batch share.
-pub(super) struct Pass<'a> {
+struct Pass<'a> {
     network: &'a MotionNetwork,
     batch: &'a ForecastBatch<'a>,
     observation: ObservedSteps<'a>,
@@ -25,7 +28,7 @@ pub(super) struct Pass<'a> {
 }
 
 /// The key-value caches after the observed time steps, and the features of the last one.
-type Observed = (Memory<KernelBackend>, Rc<Rows>);
+type ObservedMemory = (Memory<KernelBackend>, Rc<Rows>);
 
 /// Some hypotheses of a pass, rolled out on one thread.
 struct HypothesisPart<'a> {
@@ -34,8 +37,22 @@ struct HypothesisPart<'a> {
     hypotheses: Range<usize>,
 }
 
+impl ForecastWindows for MotionNetwork {
+    fn config(&self) -> &StarConfig {
+        &self.config
+    }
+
+    fn copy_weights(&self) -> Result<Weights, NetworkError> {
+        Ok(self.weights.clone())
+    }
+
+    fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
+        Ok(Pass::new(self, batch).roll_out())
+    }
+}
+
 impl<'a> Pass<'a> {
-    pub(super) fn new(network: &'a MotionNetwork, batch: &'a ForecastBatch<'a>) -> Self {
+    fn new(network: &'a MotionNetwork, batch: &'a ForecastBatch<'a>) -> Self {
         let observation = ObservedSteps::new(batch, &network.config);
         let seen = observation.seen(0..OBSERVED);
         let centred = observation.centred();
@@ -44,7 +61,7 @@ impl<'a> Pass<'a> {
         Self { scene: Buffer::copy(&scene), network, batch, observation }
     }
 
-    pub(super) fn roll_out(&self) -> BatchRollout {
+    fn roll_out(&self) -> BatchRollout {
         let (pedestrians, hypotheses) = (self.batch.pedestrians(), self.batch.hypotheses());
         let at_once = (ROWS_AT_ONCE / pedestrians).clamp(1, hypotheses);
         let parts: Vec<BatchRollout> = (0..hypotheses)
@@ -100,7 +117,7 @@ impl HypothesisPart<'_> {
         self.walk(state, observed)
     }
 
-    fn observe(&self, state: &RolloutState<'_>) -> Observed {
+    fn observe(&self, state: &RolloutState<'_>) -> ObservedMemory {
         let mut memory = Memory::default();
         let mut step = |t| {
             let relative = state.observed_relative(t);
@@ -117,7 +134,7 @@ impl HypothesisPart<'_> {
     }
 
     /// Computes the time steps to forecast.
-    fn walk(&self, mut state: RolloutState<'_>, (mut memory, mut features): Observed) -> BatchRollout {
+    fn walk(&self, mut state: RolloutState<'_>, (mut memory, mut features): ObservedMemory) -> BatchRollout {
         let Pass { observation, batch, .. } = self.pass;
         let MotionNetwork { backbone, spread, .. } = self.pass.network;
         let hypotheses = self.hypotheses.len();

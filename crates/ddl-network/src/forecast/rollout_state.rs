@@ -141,8 +141,7 @@ impl<'a> RolloutState<'a> {
             });
             frames.collect()
         });
-        let goals = goals.iter().flatten();
-        let goals: Vec<[f32; 2]> = goals.map(|goal| goal.map(|x| x as f32)).collect();
+        let goals: Vec<[f32; 2]> = goals.iter().flatten().map(|goal| goal.map(|x| x as f32)).collect();
         let last = observation.at(OBSERVED - 1);
         Self {
             references: if config.variant.goal_shift() { goals.clone() } else { last.to_vec() },
@@ -264,8 +263,7 @@ fn rows(shape: [usize; 3], numbers: Buffer) -> Rc<Rows> {
 }
 
 fn tracks<'a>(batch: &'a ForecastBatch<'_>) -> impl Iterator<Item = &'a [Position]> {
-    let windows = batch.windows.iter();
-    windows.flat_map(|window| (0..window.len()).map(|i| window.observed(i)))
+    batch.windows.iter().flat_map(|window| (0..window.len()).map(|i| window.observed(i)))
 }
 
 /// The bounds in single precision. The integration in `f64`, which has the same bounds, reports invalid speeds.

@@ -1,10 +1,9 @@
 //! Reusable memory for rows of numbers.
 
+use ddl_simd::LANES;
 use std::cell::RefCell;
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
-
-use ddl_simd::LANES;
 
 /// Number of free buffers that a thread keeps for its next work, while no [`KeepBuffers`] lives. For small batches the
 /// system's allocation takes as long as the work.

@@ -8,7 +8,7 @@ mod layer;
 mod tests;
 
 use crate::kernel::buffer::Buffer;
-use crate::kernel::scenes::Frames;
+use crate::kernel::scenes::SceneFrames;
 use crate::kernel::spatial_attention::Attended;
 use crate::kernel::temporal_attention::KeyValue;
 use forward_results::AttentionResults;
@@ -23,7 +23,7 @@ impl EncoderKernel {
     pub(crate) fn spatial_attention(
         &self,
         x: &[f32],
-        frames: Frames<'_>,
+        frames: SceneFrames<'_>,
         dropouts: Dropouts,
         keep: bool,
     ) -> (Buffer, ForwardResults) {
@@ -41,7 +41,7 @@ impl EncoderKernel {
     pub(crate) fn spatial_attention_backward(
         &self,
         x: &[f32],
-        frames: Frames<'_>,
+        frames: SceneFrames<'_>,
         dropouts: Dropouts,
         forward_results: &ForwardResults,
         gy: &[f32],

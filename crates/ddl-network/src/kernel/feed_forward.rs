@@ -7,5 +7,5 @@ mod layer;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use backward::Gradients;
+pub(crate) use backward::LayerGradients;
 pub(crate) use layer::FeedForward;

@@ -54,8 +54,8 @@ impl Heads {
 /// is enough.
 #[inline(always)]
 pub(super) fn load<S: Simd>(simd: S, group: usize, first: &[f32], second: Option<&[f32]>) -> Vectors<S> {
-    if let Some(a) = whole(group, first)
-        && let Some(b) = second.map_or(Some(&ZERO_HALVES), |row| whole(group, row))
+    if let Some(a) = whole_halves(group, first)
+        && let Some(b) = second.map_or(Some(&ZERO_HALVES), |row| whole_halves(group, row))
     {
         return loaded(simd, a, b);
     }
@@ -110,7 +110,7 @@ fn gathered(group: usize, row: &[f32]) -> Halves {
 }
 
 #[inline(always)]
-fn whole(group: usize, row: &[f32]) -> Option<&Halves> {
+fn whole_halves(group: usize, row: &[f32]) -> Option<&Halves> {
     row.as_chunks().0.get(group * DEPTH..)?.first_chunk()
 }
 

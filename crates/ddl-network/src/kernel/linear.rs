@@ -59,8 +59,7 @@ impl LinearKernel {
         let mut gx = Buffer::any(x.len());
         let pieces = x.len().div_ceil(ROWS * self.map.inputs);
         let mut sums = Buffer::many_zeros(pieces, of_weights.len());
-        let inputs = x.chunks(ROWS * self.map.inputs);
-        let inputs = inputs.zip(gy.chunks(ROWS * self.map.outputs));
+        let inputs = x.chunks(ROWS * self.map.inputs).zip(gy.chunks(ROWS * self.map.outputs));
         let outputs = gx.chunks_mut(ROWS * self.map.inputs).zip(&mut sums);
         let jobs = inputs.zip(outputs).map(|((x, gy), (gx, sums))| LinearBackward {
             map: &self.map,

@@ -35,7 +35,7 @@ impl SeenKey {
 
 /// The visibility in some of the frames of [`Scenes`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Frames<'a> {
+pub(crate) struct SceneFrames<'a> {
     scenes: &'a Scenes,
     first: usize,
     count: usize,
@@ -55,7 +55,7 @@ pub(super) struct SceneView<'a> {
 
 impl<'a> SceneView<'a> {
     /// The keys visible to the pedestrians 2 `two` and 2 `two` + 1, ascending.
-    pub(super) fn of(self, two: usize) -> &'a [SeenKey] {
+    pub(super) fn keys_of(self, two: usize) -> &'a [SeenKey] {
         let start = two.checked_sub(1).map_or(self.start, |i| self.ends[i]);
         &self.seen[start..self.ends[two]]
     }
@@ -145,12 +145,11 @@ impl Scenes {
     pub fn pairs(&self, frame: usize, queries: Range<usize>) -> impl Iterator<Item = (usize, usize)> + '_ {
         let Range { start, end } = queries;
         let first = self.ranges.partition_point(|scene| scene.end <= start);
-        let scenes = self.during(frame..frame + 1).of_entry(0).skip(first);
-        let scenes = scenes.take_while(move |scene| scene.first < end);
+        let scenes = self.during(frame..frame + 1).of_entry(0).skip(first).take_while(move |scene| scene.first < end);
         scenes.flat_map(move |scene| {
             let within = |i: usize| i.saturating_sub(scene.first).min(scene.pedestrians);
             (within(start)..within(end)).flat_map(move |i| {
-                let seen = scene.of(i / 2).iter();
+                let seen = scene.keys_of(i / 2).iter();
                 let seen = seen.filter(move |seen| seen.code() >> (i % 2) & 1 == 1);
                 seen.map(move |seen| (scene.first + i, scene.first + seen.key()))
             })
@@ -161,13 +160,13 @@ impl Scenes {
     ///
     /// # Panics
     /// If the range is empty or a frame does not exist.
-    pub(crate) fn during(&self, frames: Range<usize>) -> Frames<'_> {
+    pub(crate) fn during(&self, frames: Range<usize>) -> SceneFrames<'_> {
         assert!(frames.start < frames.end && frames.end <= self.frames, "frames {frames:?} of {}", self.frames);
-        Frames { scenes: self, first: frames.start, count: frames.len() }
+        SceneFrames { scenes: self, first: frames.start, count: frames.len() }
     }
 
     #[cfg(test)]
-    pub(super) fn throughout(&self) -> Frames<'_> {
+    pub(super) fn throughout(&self) -> SceneFrames<'_> {
         self.during(0..self.frames)
     }
 }
@@ -181,7 +180,7 @@ fn check(seen: &[u32], query: usize, size: usize) {
     assert!(sees_itself, "every pedestrian sees itself");
 }
 
-impl<'a> Frames<'a> {
+impl<'a> SceneFrames<'a> {
     pub(super) fn scenes(self) -> &'a Scenes {
         self.scenes
     }
@@ -236,9 +235,9 @@ mod tests {
         let scenes = Scenes::new(&[1, 3], lists(&[1, 3], &both));
         assert_eq!((scenes.pedestrians(), scenes.frames()), (4, 2));
         assert_eq!(scenes.ranges(), [0..1, 1..4]);
-        let codes_of = |frames: Frames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
+        let codes_of = |frames: SceneFrames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
             let scenes = frames.of_entry(entry);
-            let twos = scenes.flat_map(|scene| (0..scene.ends.len()).map(move |i| scene.of(i)));
+            let twos = scenes.flat_map(|scene| (0..scene.ends.len()).map(move |i| scene.keys_of(i)));
             let codes = twos.map(|seen| seen.iter().map(|seen| (seen.key(), seen.code())));
             codes.map(Iterator::collect).collect()
         };

@@ -11,7 +11,7 @@ mod tests;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::heads::AttentionKernel;
-use crate::kernel::scenes::Frames;
+use crate::kernel::scenes::SceneFrames;
 use backward::SceneBackward;
 use ddl_simd::Lanes;
 use dropout::WeightDecisions;
@@ -41,7 +41,7 @@ impl AttentionKernel {
     pub(crate) fn spatial_forward(
         &self,
         inputs: [&[f32]; 3],
-        frames: Frames<'_>,
+        frames: SceneFrames<'_>,
         dropout: Option<Dropout>,
         keep: bool,
     ) -> Attended {
@@ -73,7 +73,7 @@ impl AttentionKernel {
     pub(crate) fn spatial_backward(
         &self,
         inputs: [&[f32]; 3],
-        frames: Frames<'_>,
+        frames: SceneFrames<'_>,
         dropout: Option<Dropout>,
         attended: &Attended,
         mixed_gradient: &[f32],
@@ -107,16 +107,16 @@ impl AttentionKernel {
         run_buffered(self.dispatch, jobs, work);
     }
 
-    fn work(&self, frames: Frames<'_>, entries: usize) -> usize {
+    fn work(&self, frames: SceneFrames<'_>, entries: usize) -> usize {
         frames.pairs(entries) * self.heads.groups() * WORK_OF_A_PAIR
     }
 
-    fn normalisers(&self, frames: Frames<'_>) -> usize {
+    fn normalisers(&self, frames: SceneFrames<'_>) -> usize {
         let ranges = frames.scenes().ranges().iter();
         self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
     }
 
-    fn check_scenes(&self, inputs: [&[f32]; 3], frames: Frames<'_>) -> usize {
+    fn check_scenes(&self, inputs: [&[f32]; 3], frames: SceneFrames<'_>) -> usize {
         let entry = frames.scenes().pedestrians() * self.heads.row();
         for input in inputs {
             let whole = !input.is_empty() && input.len().is_multiple_of(entry) && input.len() == inputs[0].len();
@@ -131,7 +131,7 @@ impl AttentionKernel {
     fn tasks<'a>(
         &self,
         inputs: [&'a [f32]; 3],
-        frames: Frames<'a>,
+        frames: SceneFrames<'a>,
         dropout: Option<Dropout>,
     ) -> impl Iterator<Item = ([&'a [f32]; 3], SceneTask<'a>)> {
         let (heads, decisions) = (self.heads, dropout.and_then(WeightDecisions::new));

@@ -62,7 +62,6 @@ impl Weights {
 
     /// Each tensor with its numbers in row-major order.
     pub fn iter(&self) -> impl Iterator<Item = (&TensorLayout, &[f32])> {
-        let tensors = self.layout.tensors().iter();
-        tensors.map(|tensor| (tensor, &self.numbers[tensor.span()]))
+        self.layout.tensors().iter().map(|tensor| (tensor, &self.numbers[tensor.span()]))
     }
 }

@@ -30,8 +30,7 @@ impl Origin {
 
     /// The header of a safetensors file: one entry with the origin and the SHA-256 of the file's numbers.
     pub fn to_header(&self, digest: &str) -> HashMap<String, String> {
-        let facts = self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()));
-        let facts = facts.chain([(DIGEST, digest)]);
+        let facts = self.0.iter().map(|(name, value)| (name.as_str(), value.as_str())).chain([(DIGEST, digest)]);
         let facts = facts.map(|(name, value)| (name.to_owned(), value.into()));
         let facts = serde_json::Value::Object(facts.collect());
         HashMap::from([(HEADER.to_owned(), facts.to_string())])

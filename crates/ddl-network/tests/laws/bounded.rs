@@ -12,8 +12,7 @@ use proptest::sample::Index;
 const ROUNDING: f64 = 1e-4;
 
 fn with_dynamics() -> Vec<StarConfig> {
-    let configs = configs().into_iter();
-    configs.filter(|config| config.variant.dynamics()).collect()
+    configs().into_iter().filter(|config| config.variant.dynamics()).collect()
 }
 
 proptest! {

@@ -56,8 +56,7 @@ fn earlier(aside: f64) -> RememberedTrack {
 }
 
 fn bits(proposed: &ProposedEndpoints) -> Vec<u64> {
-    let numbers = proposed.endpoints.as_flattened().iter().chain(&proposed.weights);
-    numbers.map(|number| number.to_bits()).collect()
+    proposed.endpoints.as_flattened().iter().chain(&proposed.weights).map(|number| number.to_bits()).collect()
 }
 
 proptest! {
@@ -90,8 +89,7 @@ proptest! {
 /// Largest distance between the endpoints of two views.
 fn apart(a: &PedestrianView, b: &PedestrianView) -> f64 {
     let proposed = network(small()).propose(&[a.clone(), b.clone()]).unwrap();
-    let pairs = proposed[0].endpoints.iter().zip(&proposed[1].endpoints);
-    pairs.map(|(&a, &b)| distance(a, b)).fold(0.0, f64::max)
+    proposed[0].endpoints.iter().zip(&proposed[1].endpoints).map(|(&a, &b)| distance(a, b)).fold(0.0, f64::max)
 }
 
 #[test]

@@ -8,8 +8,7 @@ use proptest::sample::Index;
 
 fn bits(rollout: &WindowRollout) -> Vec<u64> {
     let factors = rollout.factors.iter().flatten().flatten();
-    let numbers = rollout.positions.as_flattened().iter().chain(factors);
-    numbers.map(|number| number.to_bits()).collect()
+    rollout.positions.as_flattened().iter().chain(factors).map(|number| number.to_bits()).collect()
 }
 
 fn questions() -> impl Strategy<Value = Question> {

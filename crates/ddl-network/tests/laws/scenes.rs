@@ -77,6 +77,5 @@ pub(crate) fn recommended(backbone: BackboneKind, variant: Variant) -> StarConfi
 }
 
 pub(crate) fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.unwrap().install(run)
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
 }

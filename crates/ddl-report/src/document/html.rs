@@ -1,9 +1,8 @@
 //! A document as the body of an HTML page.
 
-use maud::{Markup, PreEscaped, html};
-
 use crate::document::parts::{Document, Part};
 use crate::document::table::Table;
+use maud::{Markup, PreEscaped, html};
 
 #[derive(Debug)]
 pub(crate) struct ContentsEntry {

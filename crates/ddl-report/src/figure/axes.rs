@@ -1,10 +1,9 @@
 //! The frame of a plot in metres, with its grid and numbers.
 
-use ddl_core::{Position, bounds};
-
 use crate::figure::drawing::Drawing;
 use crate::figure::plan::PlanView;
 use crate::figure::scale::{round_step, ticks};
+use ddl_core::{Position, bounds};
 
 /// Smallest width of the shown area, metres, for scenes in which all pedestrians stand still.
 const LEAST_SPAN: f64 = 4.0;

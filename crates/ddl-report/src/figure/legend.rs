@@ -10,7 +10,7 @@ const WIDTH: f64 = 42.0;
 const GAP: f64 = 16.0;
 
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Sample {
+pub(super) enum LegendSample {
     Observed,
     Truth,
     Forecast,
@@ -22,7 +22,7 @@ pub(super) enum Sample {
     Region,
 }
 
-impl Sample {
+impl LegendSample {
     fn draw(self, drawing: &mut Drawing, [left, y]: [f64; 2]) {
         let right = left + WIDTH;
         let middle = f64::midpoint(left, right);
@@ -54,7 +54,7 @@ impl Sample {
     }
 }
 
-pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries: &[(Sample, &str)]) {
+pub(super) fn draw_column(drawing: &mut Drawing, [left, top]: [f64; 2], entries: &[(LegendSample, &str)]) {
     for (row, (sample, words)) in entries.iter().enumerate() {
         let y = top + ENTRY * (row as f64 + 0.5);
         drawing.text("key", [left + WIDTH + GAP, y + 4.0], *words);

@@ -1,11 +1,10 @@
 //! Draws the observed track and the forecast of one pedestrian, in the same way in every picture.
 
-use ddl_core::{OBSERVED, Position};
-
 use crate::figure::drawing::Drawing;
 use crate::figure::marks::star;
 use crate::figure::plan::PlanView;
 use crate::snapshot::{SnapshotHypothesis, SnapshotPedestrian};
+use ddl_core::{OBSERVED, Position};
 
 fn from_last<'a>(observed: &'a [Position], path: &'a [Position]) -> impl Iterator<Item = &'a Position> {
     observed[OBSERVED - 1..].iter().chain(path)
@@ -43,8 +42,7 @@ pub(crate) fn representative_goal(drawing: &mut Drawing, plan: &PlanView, pedest
 
 pub(crate) fn representative(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian) {
     let hypothesis: &SnapshotHypothesis = &pedestrian.hypotheses[pedestrian.representative()];
-    let way = from_last(&pedestrian.observed, &hypothesis.positions);
-    let way: Vec<Position> = way.copied().collect();
+    let way: Vec<Position> = from_last(&pedestrian.observed, &hypothesis.positions).copied().collect();
     drawing.path("forecast", &plan.path(&way));
     if let Some(end) = way.last() {
         drawing.polygon("star", &star(plan.px(*end), 7.0));

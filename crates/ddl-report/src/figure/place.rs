@@ -1,12 +1,11 @@
 //! A map of a place: the density of tracks, and where tracks begin and end.
 
-use ddl_core::Position;
-
 use crate::figure::axes::{Axes, PLACE};
 use crate::figure::cut::cut;
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
 use crate::figure::scale::round_step;
 use crate::figure::traffic::{Ends, Traffic};
+use ddl_core::Position;
 
 /// Side of a square (m), if it is large enough in pixels.
 const SIDE: f64 = 0.5;
@@ -41,8 +40,7 @@ pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
     drawing.text("heading", [left, top - 36.0], title);
     drawing.text("key", [left, top - 14.0], numbers);
     let shades = shades(traffic.crossed.values().copied().max().unwrap_or(0));
-    let most = traffic.ends.values();
-    let most = most.map(|ends| ends.begun.max(ends.ended)).max().unwrap_or(0);
+    let most = traffic.ends.values().map(|ends| ends.begun.max(ends.ended)).max().unwrap_or(0);
     axes.draw(&mut drawing);
     axes.draw_names(&mut drawing);
     drawing.within(axes.frame(), |drawing| {
@@ -129,7 +127,7 @@ impl Legend<'_> {
             let (left, y) = (self.left, self.y);
             let sample = [[left, y - 0.5 * ROW], [left + SAMPLE, y + 0.5 * ROW]];
             self.drawing.rectangle(&shade_class(shade, shades), sample);
-            self.words(&words);
+            self.write(&words);
         }
         self.y += 0.5 * ROW;
     }
@@ -139,7 +137,7 @@ impl Legend<'_> {
         for (words, begun, ended) in [("begin there", most, 0), ("end there", 0, most)] {
             let centre = [self.left + 0.5 * SAMPLE, self.y];
             draw_mark(self.drawing, centre, Ends { begun, ended }, most);
-            self.words(&format!("{most} {words}"));
+            self.write(&format!("{most} {words}"));
             self.y += 0.3 * ROW;
         }
     }
@@ -150,7 +148,7 @@ impl Legend<'_> {
         self.y += ROW;
     }
 
-    fn words(&mut self, words: &str) {
+    fn write(&mut self, words: &str) {
         let start = [self.left + SAMPLE + 12.0, self.y + 4.0];
         self.drawing.text("key", start, words);
         self.y += ROW;

@@ -1,13 +1,12 @@
 //! One scene: the past, future and forecast of every pedestrian.
 
-use ddl_core::{Disc, Forecast, HORIZON, OBSERVED, Position, Window};
-
 use crate::error::ReportError;
 use crate::figure::axes::{Axes, SCENE};
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
-use crate::figure::legend::{self, Sample};
+use crate::figure::legend::{self, LegendSample};
 use crate::figure::pedestrian;
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
+use ddl_core::{Disc, Forecast, HORIZON, OBSERVED, Position, Window};
 
 /// Probability that the drawn region contains the pedestrian at the end of the horizon.
 const LEVEL: f64 = 0.9;
@@ -63,26 +62,26 @@ fn regions(forecast: &Forecast) -> impl Iterator<Item = Disc> {
     (0..forecast.pedestrians()).flat_map(of_one)
 }
 
-fn entries(window: &Window, forecast: &Forecast) -> Vec<(Sample, &'static str)> {
+fn entries(window: &Window, forecast: &Forecast) -> Vec<(LegendSample, &'static str)> {
     let several = forecast.hypotheses() > 1;
-    let mut entries = vec![(Sample::Observed, "observed, 3.2 s")];
+    let mut entries = vec![(LegendSample::Observed, "observed, 3.2 s")];
     if window.has_future() {
-        entries.push((Sample::Truth, "truth, 4.8 s, and its end"));
+        entries.push((LegendSample::Truth, "truth, 4.8 s, and its end"));
     }
     if several {
         entries.extend([
-            (Sample::Forecast, "representative forecast"),
-            (Sample::OtherHypotheses, "other hypotheses"),
-            (Sample::Note, "(the paler, the less likely)"),
+            (LegendSample::Forecast, "representative forecast"),
+            (LegendSample::OtherHypotheses, "other hypotheses"),
+            (LegendSample::Note, "(the paler, the less likely)"),
         ]);
     } else {
-        entries.push((Sample::Forecast, "forecast"));
+        entries.push((LegendSample::Forecast, "forecast"));
     }
     if forecast.has_goals() {
-        entries.push((Sample::Goals, if several { "goals" } else { "goal" }));
+        entries.push((LegendSample::Goals, if several { "goals" } else { "goal" }));
     }
     if regions(forecast).next().is_some() {
-        entries.push((Sample::Region, "90 % region at 4.8 s"));
+        entries.push((LegendSample::Region, "90 % region at 4.8 s"));
     }
     entries
 }

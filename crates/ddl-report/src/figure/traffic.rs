@@ -1,8 +1,7 @@
 //! Counts of tracks: how many cross each square of a place, begin in it and end in it.
 
-use std::collections::BTreeMap;
-
 use ddl_core::Position;
+use std::collections::BTreeMap;
 
 /// Two positions farther apart (m) are not joined: the track has a gap between them.
 const LONGEST_STEP: f64 = 1.5;

@@ -1,11 +1,10 @@
 //! The baselines of `ddl-eval` on the real recordings agree with the reference values in `literature.json`.
 
+use crate::literature::{BaselineReference, FOLDS, LITERATURE};
 use ddl_core::{Forecaster, Window};
 use ddl_data::{Convention, Dataset, WindowRule, locate};
 use ddl_eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint};
 use ddl_eval::{Conditions, Protocol, ResultRow};
-
-use crate::literature::{BaselineReference, FOLDS, LITERATURE};
 
 /// The test windows of every fold; without recordings the tests are skipped, except in CI.
 fn folds() -> Option<Vec<(&'static str, Vec<Window>)>> {

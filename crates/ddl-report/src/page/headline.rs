@@ -1,18 +1,14 @@
 //! The first screen: what was measured, the best result with its conditions, and the comparison.
 
-use std::cmp::Ordering;
-
-use maud::{Markup, html};
-
 use crate::document::{inline, warning};
 use crate::page::headline_chart::{ChartShape, MOST_LINES, headline_chart};
 use crate::page::standing::{Standing, StandingLine, standing};
 use crate::report::Report;
+use maud::{Markup, html};
+use std::cmp::Ordering;
 
 pub(super) fn headline(report: &Report) -> Markup {
-    let Some(standing) = standing(report) else {
-        return html! { p.nothing { "This report holds no results." } };
-    };
+    let Some(standing) = standing(report) else { return html! { p.nothing { "This report holds no results." } } };
     let subject = standing.subject();
     let [ade, fde] = standing.shared.protocol.errors();
     let lines = standing.lines.len();
@@ -70,12 +66,8 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
 /// of hypotheses.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
     let others: Vec<&StandingLine> = standing.others(subject).collect();
-    let (Some([own, _]), Some(best)) = (subject.mean, others.first()) else {
-        return String::new();
-    };
-    let Some([ade, fde]) = best.mean else {
-        return String::new();
-    };
+    let (Some([own, _]), Some(best)) = (subject.mean, others.first()) else { return String::new() };
+    let Some([ade, fde]) = best.mean else { return String::new() };
     let guesses = match subject.hypotheses {
         1 => "one hypothesis".to_owned(),
         several => format!("{several} hypotheses"),

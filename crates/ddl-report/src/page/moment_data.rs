@@ -17,11 +17,10 @@
 //!
 //! Positions of moments are whole millimetres, so the encoding is exact: `x / 1000` is the original number.
 
-use ddl_core::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position};
-use serde::Serialize;
-
 use crate::error::ReportError;
 use crate::snapshot::{ForecastSnapshot, SnapshotHypothesis, SnapshotPedestrian};
+use ddl_core::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position};
+use serde::Serialize;
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]

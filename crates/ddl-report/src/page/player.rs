@@ -1,9 +1,8 @@
 //! Parts of every page with a player: head, bar, player, data, scripts.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
-
 use crate::figure::drawing;
 use crate::snapshot::ForecastSnapshot;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const THEME_BUTTON: &str = include_str!("theme_button.html");
 const PLAYER: &str = include_str!("player.html");

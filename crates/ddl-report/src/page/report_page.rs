@@ -1,8 +1,5 @@
 //! The HTML page of a report.
 
-use ddl_core::HORIZON;
-use maud::{Markup, html};
-
 use crate::document::{ContentsEntry, inline};
 use crate::error::ReportError;
 use crate::page::headline_chart::{ChartShape, headline_chart};
@@ -10,6 +7,8 @@ use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
 use crate::page::{headline, moment_check, moment_data, standing};
 use crate::report::Report;
 use crate::snapshot::ForecastSnapshot;
+use ddl_core::HORIZON;
+use maud::{Markup, html};
 
 /// The script of the rest of this page, run after those of the player.
 const REPORT_SCRIPT: &str = include_str!("script/report_file.js");

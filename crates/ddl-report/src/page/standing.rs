@@ -1,9 +1,8 @@
 //! The ranking at the head of the page: comparable rows, and the best of them.
 
+use crate::report::{Report, ResultGroup, TableLine, groups, order};
 use ddl_data::WindowRule;
 use ddl_eval::{Conditions, Scores};
-
-use crate::report::{Report, ResultGroup, TableLine, groups, order};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Standing {

@@ -1,11 +1,10 @@
 //! A page with only the player, for forecasts without a known future.
 
-use maud::html;
-
 use crate::error::ReportError;
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
 use crate::page::{moment_check, moment_data};
 use crate::snapshot::ForecastSnapshot;
+use maud::html;
 
 /// Content of a page that plays forecasts of own tracks: one file, which needs no network and no other file.
 #[derive(Debug, Clone, Copy)]

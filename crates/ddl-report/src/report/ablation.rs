@@ -1,11 +1,10 @@
 //! The ablation: the contributions of the goal and of the dynamics, and the paper's Table II.
 
-use ddl_eval::{Conditions, Protocol};
-
 use crate::document::{Part, Table};
 use crate::literature::{AblationRow, LITERATURE, ablation_table};
 use crate::report::cells::{errors, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
+use ddl_eval::{Conditions, Protocol};
 
 /// One table for each group that has a variant without one of the two components, then the paper's table.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {

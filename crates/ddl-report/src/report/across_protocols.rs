@@ -1,11 +1,10 @@
 //! The same forecaster under every protocol: the effect of choosing with the truth.
 //! This is the only table with several protocols. It states that their numbers are not comparable.
 
-use ddl_eval::Protocol;
-
 use crate::document::{Part, Table};
 use crate::report::cells::{NOTHING, errors};
 use crate::report::group::{ResultGroup, TableLine};
+use ddl_eval::Protocol;
 
 const NOTE: &str = "Every line has the same windows and folds. Under `published` the goal of each pedestrian is \
     chosen with the true end, among the goals of the published estimator, whose query reads one future frame. Then \

@@ -1,12 +1,10 @@
 //! Results by kind of motion.
 
-use std::fmt;
-
-use ddl_eval::{CategoryScores, MotionKind};
-
 use crate::document::{Part, Table};
 use crate::report::cells::{counts, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
+use ddl_eval::{CategoryScores, MotionKind};
+use std::fmt;
 
 /// One table with a line for each kind of motion and a column for each forecaster. Empty if no row has scores by kind,
 /// or if the forecasters share no fold.
@@ -65,9 +63,7 @@ impl Pooled {
                 .filter_map(|scores: &CategoryScores| Some((scores.pedestrians, scores.errors(protocol)?)))
                 .collect();
             // Every seed is scored on the same windows.
-            let Some(&(first, _)) = of_seeds.first() else {
-                continue;
-            };
+            let Some(&(first, _)) = of_seeds.first() else { continue };
             let weight = first as f64 / of_seeds.len() as f64;
             pedestrians += first;
             for (at, sum) in sums.iter_mut().enumerate() {

@@ -1,11 +1,10 @@
 //! The parts of a report and their order.
 
-use ddl_data::Convention;
-use ddl_eval::{Protocol, ResultRow};
-
 use crate::document::{Document, Part};
 use crate::report::group::{ResultGroup, groups};
 use crate::report::{ablation, across_protocols, deployable, metrics, published, section};
+use ddl_data::Convention;
+use ddl_eval::{Protocol, ResultRow};
 
 /// What the columns of every group mean, by table.
 const LEGENDS: &str = include_str!("how_to_read.txt");
@@ -30,8 +29,7 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
 fn first_line(groups: &[ResultGroup<'_>]) -> String {
     let mut conventions: Vec<Convention> = groups.iter().map(|group| group.convention).collect();
     conventions.dedup();
-    let described = conventions.into_iter();
-    let described = described.map(|one| format!("`{one}` ({})", describe_convention(one)));
+    let described = conventions.into_iter().map(|one| format!("`{one}` ({})", describe_convention(one)));
     let described: Vec<String> = described.collect();
     match described.as_slice() {
         [] => "Data convention: none, this report holds no results.".to_owned(),

@@ -1,10 +1,9 @@
 //! What a program can use that takes one path for each pedestrian, chosen without the truth.
 
-use ddl_eval::{DeployableErrors, Protocol, Scores};
-
 use crate::document::{Part, Table};
 use crate::report::cells::NOTHING;
 use crate::report::group::{ResultGroup, TableLine};
+use ddl_eval::{DeployableErrors, Protocol, Scores};
 
 const NOTE: &str = "One path for each pedestrian, chosen without the truth: the forecast of one hypothesis, or the \
     likeliest or the medoid of several. Cells: ADE/FDE in metres, in brackets the mean ADE of the worst 5 % of the \

@@ -1,10 +1,9 @@
 //! Groups of rows: those of one table, and those of one line of it.
 
-use ddl_data::{Convention, WindowRule};
-use ddl_eval::{Conditions, Protocol, ResultRow, Scores, significance::BlockErrors};
-
 use crate::document::Part;
 use crate::report::spread::SeedSpread;
+use ddl_data::{Convention, WindowRule};
+use ddl_eval::{Conditions, Protocol, ResultRow, Scores, significance::BlockErrors};
 
 /// Comparable rows: one table.
 pub(crate) struct ResultGroup<'a> {
@@ -116,8 +115,7 @@ impl ResultGroup<'_> {
     }
 
     pub(crate) fn pedestrians(&self, fold: &str) -> Vec<usize> {
-        let rows = self.lines.iter().flat_map(|line| line.on(fold));
-        rows.map(|row| row.scores.pedestrians).collect()
+        self.lines.iter().flat_map(|line| line.on(fold)).map(|row| row.scores.pedestrians).collect()
     }
 
     /// The names of the errors in its main table, such as `minADE/minFDE`.
@@ -232,7 +230,6 @@ impl<'a> TableLine<'a> {
     }
 
     pub(crate) fn present<'f>(&self, folds: &[&'f str]) -> Vec<&'f str> {
-        let folds = folds.iter().copied();
-        folds.filter(|fold| self.on(fold).next().is_some()).collect()
+        folds.iter().copied().filter(|fold| self.on(fold).next().is_some()).collect()
     }
 }

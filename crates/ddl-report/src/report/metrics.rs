@@ -1,10 +1,9 @@
 //! Metrics besides minADE and minFDE.
 
-use ddl_eval::{JointScores, Protocol, Scores};
-
 use crate::document::{Part, Table};
 use crate::report::cells::{self, NOTHING};
 use crate::report::group::{ResultGroup, TableLine};
+use ddl_eval::{JointScores, Protocol, Scores};
 
 /// A metric of the further tables: name of its column, decimals, value.
 type MetricColumn = (&'static str, usize, fn(&Scores) -> Option<f64>);

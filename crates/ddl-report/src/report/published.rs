@@ -1,10 +1,9 @@
 //! Published numbers of others, as printed by their sources.
 
-use ddl_data::Convention;
-use ddl_eval::ResultRow;
-
 use crate::document::Part;
 use crate::literature::{LITERATURE, measured_table, published_table, social_gan_joint_table};
+use ddl_data::Convention;
+use ddl_eval::ResultRow;
 
 pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
     let star = rows.iter().any(|row| row.conditions.convention == Convention::Star);

@@ -1,11 +1,10 @@
 //! Errors by recording, for own recordings that were measured together.
 
-use ddl_data::Convention;
-use ddl_eval::{RecordingErrors, ResultRow};
-
 use crate::document::{Part, Table};
 use crate::report::cells::pair;
 use crate::report::group::ResultGroup;
+use ddl_data::Convention;
+use ddl_eval::{RecordingErrors, ResultRow};
 
 /// A table for each set of own recordings: a row for each recording and one for all, a column for each forecaster.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
@@ -13,8 +12,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         return Vec::new();
     }
     let folds = group.folds();
-    let tables = folds.iter().filter_map(|fold| table(group, fold));
-    let tables: Vec<Part> = tables.map(Part::Table).collect();
+    let tables: Vec<Part> = folds.iter().filter_map(|fold| table(group, fold)).map(Part::Table).collect();
     if tables.is_empty() {
         return Vec::new();
     }

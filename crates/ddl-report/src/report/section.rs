@@ -1,12 +1,11 @@
 //! The section of one table: its conditions, the table, further tables.
 
-use ddl_data::WindowRule;
-use ddl_eval::Protocol;
-
 use crate::document::{Part, Table};
 use crate::report::cells::{counts, errors};
 use crate::report::group::ResultGroup;
 use crate::report::{categories, metrics, recordings, significance};
+use ddl_data::WindowRule;
+use ddl_eval::Protocol;
 
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let rule = describe_rule(group.window_rule);
@@ -82,6 +81,5 @@ fn conditions(group: &ResultGroup<'_>) -> Vec<String> {
             None => alike.push((settings, vec![label])),
         }
     }
-    let lines = alike.iter();
-    lines.map(|(settings, labels)| format!("{}: {settings}.", labels.join(", "))).collect()
+    alike.iter().map(|(settings, labels)| format!("{}: {settings}.", labels.join(", "))).collect()
 }

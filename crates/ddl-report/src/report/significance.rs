@@ -1,11 +1,10 @@
 //! Intervals of the errors, and of the differences between lines.
 
-use ddl_eval::significance::{BlockErrors, Interval, mean_interval, paired_difference};
-use rayon::prelude::*;
-
 use crate::document::{Part, Table};
 use crate::report::cells::{self, NOTHING, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
+use ddl_eval::significance::{BlockErrors, Interval, mean_interval, paired_difference};
+use rayon::prelude::*;
 
 type BlockMetric = fn(&BlockErrors) -> f64;
 
@@ -22,9 +21,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let mut candidates = lines.iter().filter(|(m, _)| Some(m.folds.len()) == most);
     let first = candidates.clone().next();
     let trained = candidates.find(|(m, _)| m.line.conditions().epochs.is_some());
-    let Some((reference, name)) = trained.or(first) else {
-        return Vec::new();
-    };
+    let Some((reference, name)) = trained.or(first) else { return Vec::new() };
     let [ade, fde] = group.protocol.errors();
     let mut table = Table::new([
         "forecaster".to_owned(),

@@ -1,13 +1,12 @@
 //! The main tables of a benchmark, `summary.md`: the rows and columns of a report that count most.
 
-use ddl_data::Convention;
-use ddl_eval::{Protocol, ResultRow};
-
 use crate::document::Table;
 use crate::literature;
 use crate::report::cells::{counts, errors, errors_as};
 use crate::report::group::{ResultGroup, groups};
 use crate::report::{deployable, metrics, significance};
+use ddl_data::Convention;
+use ddl_eval::{Protocol, ResultRow};
 
 /// Rows that only the full tables show, by the end of their names.
 const LEFT_OUT: [&str; 3] = ["as packed", "on the way that its network shapes", "constant acceleration (bounded)"];
@@ -18,7 +17,7 @@ const COLLISIONS: [&str; 3] = ["of all futures %", "of the best %", "of the true
 /// Columns of the second table, by their names in the full tables.
 const METRICS: [&str; 7] = ["goal FDE m", "missed %", "collide %", "certified %", "KDE NLL nats", "AMD", "AMV m²"];
 
-pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
+pub(super) fn in_words(rows: &[ResultRow], convention: Convention) -> Option<String> {
     let groups = groups(rows);
     let is_headline =
         |group: &ResultGroup<'_>| group.convention == convention && group.window_rule == convention.headline_rule();

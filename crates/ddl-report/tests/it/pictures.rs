@@ -2,11 +2,10 @@
 //!
 //! `DDL_WRITE_PICTURES=1` writes them again: look at every picture that changes.
 
-use std::path::Path;
-
 use ddl_core::{Forecast, HORIZON, Pace, PedestrianId, Position, RegionTable, Spread, Window};
 use ddl_report::page::Page;
 use ddl_report::{Report, figure};
+use std::path::Path;
 
 fn compare(name: &str, found: &str) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference").join(name);

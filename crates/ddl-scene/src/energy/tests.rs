@@ -1,9 +1,8 @@
 #![expect(clippy::float_cmp, reason = "constants are passed on with their bits")]
 
-use std::f32::consts::SQRT_2;
-
 use super::*;
 use crate::fixture::energy;
+use std::f32::consts::SQRT_2;
 
 fn agree(found: f32, expected: f32) {
     assert!((found - expected).abs() < 1e-4 * expected.max(1.0), "{found} {expected}");

@@ -53,7 +53,7 @@ fn a_plan_is_avoided_where_it_is_at_that_time() {
         plan(&rows.map(|[time, x, share]| [time + delay, x, 1.0, share * radius]))
     };
     let shares = |plan: &Plan, ego, count: usize| -> [Vec<f64>; 2] {
-        let scene = Scene::new(&window, &forecast, Some(plan), ego);
+        let scene = MixtureScene::new(&window, &forecast, Some(plan), ego);
         let chosen = sampling::samples(&scene.people, &scene.pairs, &[7, 8, 9, 10], count);
         [0, 1].map(|i| {
             let mut shares = vec![0.0; 3];

@@ -8,7 +8,7 @@ const SAME: f64 = 1e-9;
 
 /// Part of a step.
 #[derive(Debug)]
-pub(super) struct Leg {
+pub(super) struct CourseLeg {
     /// 0 to 11.
     pub(super) step: usize,
     /// Where it begins and ends, as shares of the step.
@@ -19,7 +19,7 @@ pub(super) struct Leg {
 }
 
 /// The legs of a plan over 12 steps.
-pub(super) fn legs(plan: &Plan) -> Vec<Leg> {
+pub(super) fn legs(plan: &Plan) -> Vec<CourseLeg> {
     let mut legs = Vec::with_capacity(HORIZON);
     let mut rows = plan.points().iter().map(|row| row.time / TIME_STEP).peekable();
     let (mut from, mut start) = (0.0, plan.at(0.0));
@@ -32,7 +32,7 @@ pub(super) fn legs(plan: &Plan) -> Vec<Leg> {
                 continue;
             }
             let end = plan.at(to * TIME_STEP);
-            legs.push(Leg {
+            legs.push(CourseLeg {
                 step,
                 shares: [from - first, to - first],
                 positions: [start.position, end.position],
@@ -46,17 +46,17 @@ pub(super) fn legs(plan: &Plan) -> Vec<Leg> {
 
 /// A pedestrian as the plan sees it during a leg.
 #[derive(Debug)]
-pub(super) struct Approach {
+pub(super) struct LegApproach {
     /// Its path from the plan, at both ends (m).
     pub(super) offsets: [Position; 2],
     /// Scales of its spread there (m).
     pub(super) scales: [f64; 2],
 }
 
-impl Leg {
+impl CourseLeg {
     /// Of a pedestrian with this path and these scales, at the moment and 12 steps after it.
     #[inline]
-    pub(super) fn approach(&self, path: &[Position; HORIZON + 1], scales: &[f64; HORIZON + 1]) -> Approach {
+    pub(super) fn approach(&self, path: &[Position; HORIZON + 1], scales: &[f64; HORIZON + 1]) -> LegApproach {
         let [from, to] = [path[self.step], path[self.step + 1]];
         let [least, most] = [scales[self.step], scales[self.step + 1]];
         // `ddl_core::between` is too far away to be inlined here.
@@ -64,12 +64,12 @@ impl Leg {
             let along = |axis: usize| from[axis] + self.shares[end] * (to[axis] - from[axis]);
             [along(0) - self.positions[end][0], along(1) - self.positions[end][1]]
         };
-        Approach { offsets: [offset(0), offset(1)], scales: self.shares.map(|share| least + share * (most - least)) }
+        LegApproach { offsets: [offset(0), offset(1)], scales: self.shares.map(|share| least + share * (most - least)) }
     }
 
     /// The least distance (m) from the edge of the plan during the leg, of the pedestrian that deviates from its path
     /// by `z` scales; below 0 inside.
-    pub(super) fn distance(&self, approach: &Approach, z: Position) -> f64 {
+    pub(super) fn distance(&self, approach: &LegApproach, z: Position) -> f64 {
         let [[x, y], [x1, y1]] =
             [0, 1].map(|end| [0, 1].map(|axis| approach.offsets[end][axis] + approach.scales[end] * z[axis]));
         let [dx, dy, growth] = [x1 - x, y1 - y, self.radii[1] - self.radii[0]];

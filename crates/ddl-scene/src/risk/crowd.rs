@@ -1,6 +1,6 @@
 //! Which deviations of a pedestrian come close to a plan.
 
-use super::course::{Approach, Leg, legs};
+use super::course::{CourseLeg, LegApproach, legs};
 use super::quadrature::{DEVIATIONS, Quadrature};
 use crate::{error::SceneError, futures::Futures, plan::Plan};
 use ddl_core::{HORIZON, Position, between, bounds};
@@ -14,7 +14,7 @@ const BITS: [u32; BLOCK] = [1, 2, 4, 8, 16, 32, 64, 128];
 
 /// The paths of a scene, arranged for the search.
 #[derive(Debug)]
-pub(super) struct Crowd {
+pub(super) struct CrowdAtRisk {
     n: usize,
     /// `[K][N]`, at the moment and 12 steps after it, metres.
     paths: Vec<[Position; HORIZON + 1]>,
@@ -26,12 +26,12 @@ pub(super) struct Crowd {
     outer_rings: Vec<Rings>,
     origin: Position,
     deviations: Quadrature,
-    blocks: [Block; DEVIATIONS / BLOCK],
+    blocks: [CrowdBlock; DEVIATIONS / BLOCK],
 }
 
 /// Deviations one after the other, in scales.
 #[derive(Debug)]
-struct Block {
+struct CrowdBlock {
     x: [f32; BLOCK],
     y: [f32; BLOCK],
     /// None of them is longer.
@@ -44,7 +44,7 @@ type Rings = [[f32; HORIZON]; 3];
 /// A plan with the room around it.
 #[derive(Debug)]
 pub(super) struct Sweep {
-    legs: Vec<Leg>,
+    legs: Vec<CourseLeg>,
     within: f64,
     rings: Rings,
 }
@@ -58,7 +58,7 @@ pub(super) struct Hits {
     pub(super) until: [[f64; 2]; HORIZON],
 }
 
-impl Crowd {
+impl CrowdAtRisk {
     pub(super) fn new(futures: &Futures) -> Result<Self, SceneError> {
         let (n, forecast) = (futures.pedestrians(), futures.forecast());
         let scales = (0..n).map(|i| {
@@ -90,7 +90,7 @@ impl Crowd {
         let block = |b: usize| {
             let [x, y] = [&deviations.x, &deviations.y].map(|all| from_fn(|j| all[b * BLOCK + j] as f32));
             let most = f32::hypot(x[BLOCK - 1], y[BLOCK - 1]) * (1.0 + ROUNDING as f32);
-            Block { x, y, most }
+            CrowdBlock { x, y, most }
         };
         Ok(Self { blocks: from_fn(block), n, paths, scales, rings, outer_rings, origin, deviations })
     }
@@ -118,7 +118,7 @@ impl Crowd {
         let near = near(&self.rings[pair], &sweep.rings)?;
         let (mut now, mut first) = ([0; HORIZON], 0);
         for (l, leg) in sweep.legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
-            let Approach { offsets, scales } = leg.approach(&self.paths[pair], &self.scales[i]);
+            let LegApproach { offsets, scales } = leg.approach(&self.paths[pair], &self.scales[i]);
             let reaches = leg.radii.map(|radius| sweep.within + radius);
             now[leg.step] |= self.close(offsets, scales, reaches);
             if l == 0 && now[0] > 0 {
@@ -138,7 +138,7 @@ impl Crowd {
     /// The deviations that come closer during a leg than these distances at its ends, one bit for each.
     fn close(&self, offsets: [Position; 2], scales: [f64; 2], reaches: [f64; 2]) -> u64 {
         let offsets = offsets.map(|offset| offset.map(|number| number as f32));
-        let way = Way::new(offsets, scales, reaches);
+        let way = PedestrianWay::new(offsets, scales, reaches);
         let nearest = way.nearest() * (1.0 - 4.0 * ROUNDING as f32);
         let reaches = [way.r + way.dr.max(0.0), way.s + way.ds.max(0.0)];
         let mut close = 0;
@@ -154,7 +154,7 @@ impl Crowd {
     }
 
     /// The least distance (m) of each deviation of pedestrian `i` in future `k` from the edge of a plan.
-    pub(super) fn distances(&self, legs: &[Leg], i: usize, k: usize) -> [f64; DEVIATIONS] {
+    pub(super) fn distances(&self, legs: &[CourseLeg], i: usize, k: usize) -> [f64; DEVIATIONS] {
         let Quadrature { x, y } = &self.deviations;
         let mut least = [f64::INFINITY; DEVIATIONS];
         for leg in legs {
@@ -169,7 +169,7 @@ impl Crowd {
 
 /// A leg in `f32`: from the plan to a pedestrian, its scale, and the distance that counts as close; where it begins,
 /// and what is added until its end.
-struct Way {
+struct PedestrianWay {
     x: f32,
     y: f32,
     s: f32,
@@ -180,7 +180,7 @@ struct Way {
     dr: f32,
 }
 
-impl Way {
+impl PedestrianWay {
     fn new([[x, y], end]: [[f32; 2]; 2], scales: [f64; 2], reaches: [f64; 2]) -> Self {
         let [[s, s1], [r, r1]] = [scales, reaches].map(|ends| ends.map(|number| number as f32));
         let [dx, dy, ds, dr] = [end[0] - x, end[1] - y, s1 - s, r1 - r];
@@ -198,7 +198,7 @@ impl Way {
 
     /// The deviations of a block that come close, one bit for each.
     #[expect(clippy::needless_bitwise_bool, reason = "branches would keep the loop out of vectors")]
-    fn close(&self, block: &Block) -> u32 {
+    fn close(&self, block: &CrowdBlock) -> u32 {
         let mut bits = [0; BLOCK];
         for j in 0..BLOCK {
             let [zx, zy] = [block.x[j], block.y[j]];

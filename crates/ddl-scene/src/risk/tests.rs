@@ -1,4 +1,4 @@
-use super::{DEVIATIONS, crowd::Crowd, quadrature::Quadrature};
+use super::{DEVIATIONS, crowd::CrowdAtRisk, quadrature::Quadrature};
 use crate::fixture::{futures, plan, with_deviation};
 use crate::{Futures, Plan, Risk, SceneError};
 use ddl_core::{Forecast, HORIZON, Position, Window};
@@ -6,7 +6,7 @@ use proptest::{collection::vec, prelude::*};
 use serde::Deserialize;
 
 #[derive(Deserialize)]
-struct Case {
+struct RiskCase {
     starts: Vec<Position>,
     velocities: Vec<Vec<Position>>,
     weights: Vec<f64>,
@@ -31,10 +31,10 @@ fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {
 }
 
 /// `[N]` starts, `[N][3]` velocities and `[N]` scales; rows of a plan.
-type Scene = (Vec<Position>, Vec<Vec<Position>>, Vec<f64>, Vec<[f64; 4]>);
+type RandomScene = (Vec<Position>, Vec<Vec<Position>>, Vec<f64>, Vec<[f64; 4]>);
 
 /// Crowds at random places, plans of three rows.
-fn scenes() -> impl Strategy<Value = Scene> {
+fn scenes() -> impl Strategy<Value = RandomScene> {
     let place = || [-4.0..4.0f64, -4.0..4.0f64];
     let speeds = vec([-1.5..1.5f64, -1.5..1.5f64], 3);
     let rows = vec((place(), 0.0..0.6f64), 3);
@@ -71,7 +71,7 @@ const WEIGHTS: [f64; 3] = [0.5, 0.3, 0.2];
 /// Half of the scenes have people who are close at the moment itself, an ego in a group, radii that change on the way.
 #[test]
 fn monte_carlo_agrees() {
-    let cases: Vec<Case> = serde_json::from_str(include_str!("../../tests/reference/risk.json")).unwrap();
+    let cases: Vec<RiskCase> = serde_json::from_str(include_str!("../../tests/reference/risk.json")).unwrap();
     let mut errors = Vec::new();
     let mut compare = |name: &str, found: &[f64], expected: &[f64]| {
         assert!(close(found, expected, 0.04), "{name}: {found:?} {expected:?}");
@@ -122,7 +122,7 @@ proptest! {
         let starts: Vec<Position> = starts.iter().map(|at| at.map(|x| x + shift)).collect();
         let rows: Vec<_> = rows.iter().map(|&[t, x, y, r]| [t, x + shift, y + shift, r]).collect();
         let (futures, plan) = (with_deviation(&futures(&starts, &velocities, &WEIGHTS, &scales), now), plan(&rows));
-        let crowd = Crowd::new(&futures).unwrap();
+        let crowd = CrowdAtRisk::new(&futures).unwrap();
         let (sweep, Quadrature { x: zx, y: zy }) = (crowd.sweep(&plan, within), Quadrature::new());
         // Times between which everything moves straight, by step.
         let mut times: Vec<f64> = (0..=12).map(|t| 0.4 * f64::from(t)).chain(rows.iter().map(|row| row[0])).collect();

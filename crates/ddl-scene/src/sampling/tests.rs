@@ -1,5 +1,5 @@
 use super::*;
-use crate::fixture::{Pedestrian, energy, hypotheses, pedestrians, scene};
+use crate::fixture::{FixturePedestrian, energy, hypotheses, pedestrians, scene};
 use crate::pairs::pairs_of;
 use ddl_core::distance;
 
@@ -16,9 +16,11 @@ const N: usize = 6;
 
 /// The energy by its definition: straight paths, looked at every 0.2 s; the strengths and conflicts are those of the
 /// fixture. The first two have two partners each, the third has three.
-fn pair_energy(pedestrians: &[Pedestrian], [(i, h), (j, g)]: [(usize, usize); 2]) -> f64 {
+fn pair_energy(pedestrians: &[FixturePedestrian], [(i, h), (j, g)]: [(usize, usize); 2]) -> f64 {
     let (a, b) = (&pedestrians[i], &pedestrians[j]);
-    let at = |(start, _, all): &Pedestrian, h: usize, time: f64| [0, 1].map(|axis| start[axis] + time * all[h].1[axis]);
+    let at = |(start, _, all): &FixturePedestrian, h: usize, time: f64| {
+        [0, 1].map(|axis| start[axis] + time * all[h].1[axis])
+    };
     let gap = |time: f64| distance(at(a, h, time), at(b, g, time));
     let least = (1..=24).map(|t| gap(0.2 * f64::from(t))).fold(f64::INFINITY, f64::min);
     let strength = match (i.min(j), i.max(j)) {
@@ -30,7 +32,7 @@ fn pair_energy(pedestrians: &[Pedestrian], [(i, h), (j, g)]: [(usize, usize); 2]
     let knots = if strength > 0.0 { [3.1, 1.5, 0.7, 0.3, 0.5, 0.0] } else { [1.6, 0.8, 0.4, 0.2, 0.1, 0.0] };
     let place = (least / 0.2).min(4.999_999_9);
     let conflict = knots[place as usize] + place.fract() * (knots[place as usize + 1] - knots[place as usize]);
-    let moved = |(_, _, all): &Pedestrian, h: usize| all[h].1.map(|speed| 4.8 * speed);
+    let moved = |(_, _, all): &FixturePedestrian, h: usize| all[h].1.map(|speed| 4.8 * speed);
     let apart = distance(moved(a, h), moved(b, g)) / 0.5;
     conflict + strength * (1.0 + apart * apart / 3.0).ln()
 }

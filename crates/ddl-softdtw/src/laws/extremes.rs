@@ -1,9 +1,8 @@
 //! Extreme and invalid input: huge and tiny numbers, long sequences, and errors.
 
-use proptest::prelude::*;
-
 use crate::laws::{Sequence, dtw};
 use crate::{SoftDtw, SoftDtwError};
+use proptest::prelude::*;
 
 /// Steps of every size, zero and subnormal numbers among them.
 fn any_sequence() -> impl Strategy<Value = Sequence> {

@@ -8,12 +8,12 @@ use serde::Deserialize;
 const UNIT: f64 = f64::EPSILON / 2.0;
 
 #[derive(Deserialize)]
-struct Reference {
-    cases: Vec<Case>,
+struct ExactValue {
+    cases: Vec<PrecisionCase>,
 }
 
 #[derive(Deserialize)]
-struct Case {
+struct PrecisionCase {
     n: usize,
     m: usize,
     dimension: usize,
@@ -36,7 +36,7 @@ fn sequence<const D: usize>(steps: usize, seed: usize, spread: f64, offset: f64)
 }
 
 /// The larger of the errors of value and normalised value, in units of the stated bound.
-fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
+fn compare<const D: usize>(number: usize, case: &PrecisionCase) -> f64 {
     let dtw = SoftDtw::new(case.gamma).unwrap();
     let x = sequence::<D>(case.n, 1, case.spread, case.offset);
     let y = sequence::<D>(case.m, 2, case.spread, 0.0);
@@ -77,7 +77,7 @@ fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
 #[test]
 fn values_and_gradients_keep_the_stated_bounds() {
     let text = include_str!("../../tests/reference/high_precision.json");
-    let reference: Reference = serde_json::from_str(text).unwrap();
+    let reference: ExactValue = serde_json::from_str(text).unwrap();
     assert_eq!(reference.cases.len(), 18);
     let mut worst = 0.0_f64;
     for (number, case) in reference.cases.iter().enumerate() {

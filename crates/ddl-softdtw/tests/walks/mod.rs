@@ -5,27 +5,27 @@
 use ddl_softdtw::SoftDtw;
 use fastrand::Rng;
 
-pub(crate) type Track<const D: usize> = Vec<[f64; D]>;
+pub(crate) type RandomTrack<const D: usize> = Vec<[f64; D]>;
 
 pub(crate) fn dtw_of(gamma: f64) -> SoftDtw {
     SoftDtw::new(gamma).expect("valid")
 }
 
-pub(crate) fn mapped(tracks: &[Track<2>], scale: f64, by: f64) -> Vec<Track<2>> {
+pub(crate) fn mapped(tracks: &[RandomTrack<2>], scale: f64, by: f64) -> Vec<RandomTrack<2>> {
     let map = |step: &[f64; 2]| step.map(|v| v * scale + by);
     tracks.iter().map(|t| t.iter().map(map).collect()).collect()
 }
 
 /// A stream of numbers.
-pub(crate) struct Numbers(Rng);
+pub(crate) struct RandomNumbers(Rng);
 
-impl Numbers {
+impl RandomNumbers {
     pub(crate) fn seeded(seed: u64) -> Self {
         Self(Rng::with_seed(seed))
     }
 
     /// Velocities (m/s) of a pedestrian that keeps its heading with some noise, and stands still in some steps.
-    pub(crate) fn pedestrian<const D: usize>(&mut self, steps: usize) -> Track<D> {
+    pub(crate) fn pedestrian<const D: usize>(&mut self, steps: usize) -> RandomTrack<D> {
         let mean: [f64; D] = std::array::from_fn(|_| 2.0 * self.0.f64() - 1.0);
         let stop = (self.0.f64() * 2.0 * steps as f64) as usize;
         let mut swaying = |mean: f64| mean + 0.3 * (self.0.f64() - 0.5);
@@ -37,7 +37,7 @@ impl Numbers {
     }
 
     /// Velocities of a standing pedestrian: half of them exactly 0, the others multiples of 1 mm/s.
-    pub(crate) fn standing(&mut self, steps: usize) -> Track<2> {
+    pub(crate) fn standing(&mut self, steps: usize) -> RandomTrack<2> {
         let height = if self.0.f64() < 0.5 { 0.0 } else { 4.0 };
         let mut jitter = || (self.0.f64() * height).floor() * 1e-3;
         (0..steps).map(|_| [jitter(), jitter()]).collect()

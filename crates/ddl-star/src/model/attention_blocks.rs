@@ -29,7 +29,7 @@ pub struct AttentionBlocks {
 }
 
 /// One block: its queries, and the pedestrians that they see in any frame.
-struct Block {
+struct AttentionBlock {
     queries: Range<usize>,
     keys: Vec<usize>,
 }
@@ -39,8 +39,7 @@ impl AttentionBlocks {
     pub(crate) fn new(scenes: &Scenes, device: Device, kind: Kind) -> Self {
         let blocks = blocks(scenes);
         let length = blocks.iter().map(|block| block.queries.len()).max().unwrap_or(0);
-        let width = blocks.iter().map(|block| block.keys.len()).max().unwrap_or(0);
-        let width = width.next_multiple_of(ALIGNMENT);
+        let width = blocks.iter().map(|block| block.keys.len()).max().unwrap_or(0).next_multiple_of(ALIGNMENT);
         let (mut queries, mut keys, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for block in &blocks {
             let first = block.queries.start;
@@ -93,12 +92,11 @@ impl AttentionBlocks {
     /// The rows of `pedestrians`, queries or keys. Shapes: `x` `[B, P, n]` -> `[B, S, L, n]` or `[B, S, M, n]`.
     pub(super) fn in_blocks(&self, x: &Tensor, pedestrians: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
-        let gathered = x.index_select(1, pedestrians);
-        gathered.view([batch, self.blocks, -1, width])
+        x.index_select(1, pedestrians).view([batch, self.blocks, -1, width])
     }
 }
 
-fn blocks(scenes: &Scenes) -> Vec<Block> {
+fn blocks(scenes: &Scenes) -> Vec<AttentionBlock> {
     let of_scene = |scene: &Range<usize>| {
         let end = scene.end;
         let starts = scene.clone().step_by(QUERIES);
@@ -110,18 +108,18 @@ fn blocks(scenes: &Scenes) -> Vec<Block> {
         let seen = frames.flat_map(|frame| scenes.pairs(frame, queries.clone()));
         let keys: BTreeSet<usize> = seen.map(|(_, key)| key).collect();
         let keys = keys.into_iter().collect();
-        Block { queries, keys }
+        AttentionBlock { queries, keys }
     };
     queries.into_par_iter().map(block).collect()
 }
 
 /// `[F, S, L, M]`: whether a query sees a key.
-fn seen(scenes: &Scenes, blocks: &[Block], [length, width]: [usize; 2]) -> Vec<bool> {
+fn seen(scenes: &Scenes, blocks: &[AttentionBlock], [length, width]: [usize; 2]) -> Vec<bool> {
     let of_block = length * width;
     let mut seen = vec![false; scenes.frames() * blocks.len() * of_block];
     let parts = seen.par_chunks_mut(of_block).enumerate();
     parts.for_each(|(part, seen)| {
-        let (frame, Block { queries, keys }) = (part / blocks.len(), &blocks[part % blocks.len()]);
+        let (frame, AttentionBlock { queries, keys }) = (part / blocks.len(), &blocks[part % blocks.len()]);
         for padding in queries.len()..length {
             seen[padding * width] = true;
         }

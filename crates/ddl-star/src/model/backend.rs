@@ -42,7 +42,7 @@ impl TorchBackend {
         let [of_weight, bias] = self.learned(weight);
         match &self.shared {
             Some(shared) => shared.used(map, x, &self.tensors, weight),
-            None => map.of(x, of_weight, bias),
+            None => map.apply(x, of_weight, bias),
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::StarError;
 use crate::model::attention_blocks::AttentionBlocks;
 use crate::model::numbers::tensor;
-use crate::model::scene_rows::SceneRows;
+use crate::model::scene_rows::TensorSceneRows;
 use ddl_core::Window;
 use ddl_network::backend::Scenes;
 use ddl_network::{NetworkError, visibility};
@@ -21,7 +21,7 @@ pub(crate) struct WindowBatch {
     pub(crate) positions: Tensor,
     /// The neighbours in each frame.
     pub(crate) scenes: Arc<Scenes>,
-    pub(crate) rows: SceneRows,
+    pub(crate) rows: TensorSceneRows,
     /// The neighbours in all frames for libtorch, made at the first use.
     pub(crate) seen: Arc<Mutex<Option<AttentionBlocks>>>,
     /// Share of the network's metric in the metric of a step, `[1]` or `[1, P, 1]`.
@@ -64,7 +64,7 @@ impl WindowBatch {
         let scenes = visibility(windows, mask_frames, neighbour_box);
         Ok(Self {
             positions: tensor(&positions, &[t, p, 2], (kind, device))?,
-            rows: SceneRows::new(scenes.ranges(), device, kind),
+            rows: TensorSceneRows::new(scenes.ranges(), device, kind),
             scenes: Arc::new(scenes),
             seen: Arc::default(),
             share: Tensor::ones([1], (kind, device)),

@@ -57,7 +57,7 @@ impl<B: TensorBackend> Emission<B> {
 
     /// The outputs for each pedestrian, (a, b, c) or (x, y), after all batch entries of all tokens. All pedestrians
     /// share the noise.
-    pub(super) fn of(&self, backend: &B, tokens: &[B::Tokens]) -> Tensor {
+    pub(super) fn factors(&self, backend: &B, tokens: &[B::Tokens]) -> Tensor {
         let outputs = tokens.iter().map(|token| backend.linear(self.layer, &backend.concatenate(token, &self.noise)));
         let outputs = backend.outputs(&outputs.collect::<Vec<_>>());
         match &self.covariance {

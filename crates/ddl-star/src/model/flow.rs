@@ -85,8 +85,7 @@ pub(super) fn bounded_step(
     let largest = (&arriving * MotionBounds::<f64>::MAX_SPEED_RATIO).minimum(&reach).minimum(top).maximum(&arriving);
     let clamp = |eigenvalue: &Tensor| eigenvalue.maximum(&smallest).minimum(&largest);
     let [a, b, c] = entries(factors);
-    let neutral = neutral(&u.detach(), &arriving, &smallest, bounds, time);
-    let neutral = neutral.changed(|eigenvalue| clamp(&eigenvalue));
+    let neutral = neutral(&u.detach(), &arriving, &smallest, bounds, time).changed(|eigenvalue| clamp(&eigenvalue));
     let emitted = SymmetricTensors {
         xx: a.square() + constants.sigma,
         xy: &a * &b,

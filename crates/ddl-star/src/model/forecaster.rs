@@ -7,7 +7,7 @@ use crate::model::emission::NoiseInput;
 use crate::model::network::TorchNetwork;
 use crate::model::numbers::{arrays, tensor};
 use crate::model::rollout::Rollout;
-use crate::model::tensor_backend::Engine;
+use crate::model::tensor_backend::TensorEngine;
 use ddl_core::{OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
@@ -48,7 +48,7 @@ impl TorchNetwork {
             }
         };
         let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
-        let pass = Engine::Torch(&torch);
+        let pass = TensorEngine::Torch(&torch);
         let Rollout { positions, factors } = self.layers.roll_out(&scenes, &goals, &noise, batch.rule, pass);
         Ok(BatchRollout {
             hypotheses: positions.size()[1] as usize,

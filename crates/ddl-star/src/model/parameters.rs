@@ -1,7 +1,6 @@
 //! The learned tensors, by name and in order.
 
 use crate::StarError;
-use crate::model::shared_weights::SharedWeights;
 #[cfg(test)]
 use ddl_network::weights::TensorLayout;
 use ddl_network::weights::{Layout, Weights};
@@ -33,8 +32,7 @@ impl Parameters {
             .map(|tensor| {
                 let span = tensor.span();
                 let shape: Vec<i64> = tensor.shape().iter().map(|&size| size as i64).collect();
-                let view = flat.narrow(0, span.start as i64, span.len() as i64);
-                let view = view.view(shape.as_slice());
+                let view = flat.narrow(0, span.start as i64, span.len() as i64).view(shape.as_slice());
                 let mut learned = view.copy().set_requires_grad(true);
                 learned.set_data(&view);
                 learned
@@ -51,8 +49,7 @@ impl Parameters {
     /// Names and tensors, in order.
     #[cfg(test)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &Tensor)> {
-        let names = self.layout.tensors().iter().map(TensorLayout::name);
-        names.zip(&self.tensors)
+        self.layout.tensors().iter().map(TensorLayout::name).zip(&self.tensors)
     }
 
     /// The tensor of that name.
@@ -81,11 +78,6 @@ impl Parameters {
         let numbers = Tensor::f_from_slice(weights.numbers())?;
         self.flat.shallow_clone().f_copy_(&numbers)?;
         Ok(())
-    }
-
-    /// The gradient of a loss computed by libtorch's operations only, as one vector like `flat`.
-    pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
-        SharedWeights::default().gradient(loss, self)
     }
 
     /// The gradients of a loss with respect to the learned tensors, and to tensors of its computation; `None` for those

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::device::ComputeDevice;
-use crate::model::{Engine, NoiseInput, TorchBackend, TorchNetwork, WindowBatch};
+use crate::model::{NoiseInput, TensorEngine, TorchBackend, TorchNetwork, WindowBatch};
 use crate::training::mean_squared_distance;
 use ddl_core::{PedestrianId, Window};
 use ddl_network::backend::Mode;
@@ -12,9 +12,9 @@ use ddl_network::{DeviceChoice, StarConfig, StepRule, Variant};
 use serde_json::Value;
 use tch::{Device, Kind, Tensor};
 
-struct Reference(Value);
+struct PublishedNumbers(Value);
 
-impl Reference {
+impl PublishedNumbers {
     fn load() -> Self {
         Self(serde_json::from_str(include_str!("../../tests/reference/star_ddl_forward.json")).unwrap())
     }
@@ -102,7 +102,7 @@ fn largest_difference(a: &Tensor, b: &Tensor) -> f64 {
 }
 
 fn agrees(kind: Kind, tolerance: f64) {
-    let reference = Reference::load();
+    let reference = PublishedNumbers::load();
     let network = reference.network(kind);
     let batch = reference.batch(kind);
     let pedestrians = batch.pedestrians() as i64;
@@ -110,7 +110,7 @@ fn agrees(kind: Kind, tolerance: f64) {
 
     let torch = TorchBackend::new(network.parameters(), Mode::Evaluate);
     let goal = reference.tensor("/true_goal", &[pedestrians, 2], kind);
-    let forecast = network.layers.teacher_forced(&batch, &goal, &noise, Engine::Torch(&torch));
+    let forecast = network.layers.teacher_forced(&batch, &goal, &noise, TensorEngine::Torch(&torch));
     let expected = reference.tensor("/train_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&forecast, &expected);
     assert!(difference < tolerance, "teacher-forced positions differ by {difference}");
@@ -128,7 +128,7 @@ fn agrees(kind: Kind, tolerance: f64) {
 
     let goal = reference.tensor("/estimated_goal", &[1, pedestrians, 2], kind);
     let _guard = tch::no_grad_guard();
-    let rollout = network.layers.roll_out(&batch, &goal, &noise, StepRule::Euler, Engine::Torch(&torch));
+    let rollout = network.layers.roll_out(&batch, &goal, &noise, StepRule::Euler, TensorEngine::Torch(&torch));
     let rolled = rollout.positions.squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));

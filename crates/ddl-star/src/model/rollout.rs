@@ -7,7 +7,7 @@ use crate::model::goal_frame::GoalFrame;
 use crate::model::guidance::Guidance;
 use crate::model::network::Layers;
 use crate::model::own_motion;
-use crate::model::tensor_backend::{Engine, TensorBackend};
+use crate::model::tensor_backend::{TensorBackend, TensorEngine};
 use ddl_core::{HORIZON, OBSERVED};
 use ddl_network::backbone::Backbone;
 use ddl_network::backend::Memory;
@@ -40,12 +40,12 @@ impl Layers {
         batch: &WindowBatch,
         goals: &Tensor,
         noise: &NoiseInput,
-        pass: Engine<'_>,
+        pass: TensorEngine<'_>,
     ) -> Tensor {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Engine::Torch(backend) => self.teacher_forced_by(batch, goals, noise, (backend, &*self.on_tensors)),
-            Engine::Kernels(pass) => self.teacher_forced_by(batch, goals, noise, (&pass.backend, &*self.on_rows)),
+            TensorEngine::Torch(backend) => self.teacher_forced_by(batch, goals, noise, (backend, &*self.on_tensors)),
+            TensorEngine::Kernels(pass) => self.teacher_forced_by(batch, goals, noise, (&pass.backend, &*self.on_rows)),
         }
     }
 
@@ -75,7 +75,7 @@ impl Layers {
         let shape = [1, positions.size()[1]];
         let dynamics = self.config.variant.dynamics();
         let emission = Emission::new(backend, self.output, noise_weight, noise, shape, dynamics);
-        let emitted = guidance.to_world(&emission.of(backend, &features));
+        let emitted = guidance.to_world(&emission.factors(backend, &features));
         guidance.next_positions(&positions, goals, &emitted, (0, steps))
     }
 
@@ -94,12 +94,12 @@ impl Layers {
         goals: &Tensor,
         noise: &NoiseInput,
         rule: StepRule,
-        pass: Engine<'_>,
+        pass: TensorEngine<'_>,
     ) -> Rollout {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Engine::Torch(backend) => self.roll_out_by(batch, goals, noise, rule, (backend, &*self.on_tensors)),
-            Engine::Kernels(pass) => self.roll_out_by(batch, goals, noise, rule, (&pass.backend, &*self.on_rows)),
+            TensorEngine::Torch(backend) => self.roll_out_by(batch, goals, noise, rule, (backend, &*self.on_tensors)),
+            TensorEngine::Kernels(pass) => self.roll_out_by(batch, goals, noise, rule, (&pass.backend, &*self.on_rows)),
         }
     }
 
@@ -130,7 +130,7 @@ impl Layers {
         let mut path = Vec::with_capacity(HORIZON);
         let mut factors = Vec::with_capacity(HORIZON);
         for t in OBSERVED..OBSERVED + HORIZON {
-            let emitted = guidance.to_world(&emission.of(backend, from_ref(&features)));
+            let emitted = guidance.to_world(&emission.factors(backend, from_ref(&features)));
             let before = position.detach();
             let steps = (t - OBSERVED, OBSERVED + HORIZON - t);
             position = guidance.next_positions(&position, goals, &emitted, steps);

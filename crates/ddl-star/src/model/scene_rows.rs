@@ -5,7 +5,7 @@ use tch::{Device, Kind, Tensor};
 
 /// The rows of S scenes, each padded to the length L of the largest one.
 #[derive(Debug)]
-pub(crate) struct SceneRows {
+pub(crate) struct TensorSceneRows {
     scenes: i64,
     length: i64,
     /// `[S * L]`, the pedestrians of each scene, padded with its first pedestrian.
@@ -16,7 +16,7 @@ pub(crate) struct SceneRows {
     shares: Tensor,
 }
 
-impl SceneRows {
+impl TensorSceneRows {
     pub(crate) fn new(scenes: &[Range<usize>], device: Device, kind: Kind) -> Self {
         let length = scenes.iter().map(Range::len).max().unwrap_or(0);
         let (mut pedestrians, mut shares, mut places) = (Vec::new(), Vec::new(), Vec::new());
@@ -42,11 +42,9 @@ impl SceneRows {
     /// Shapes: `x` `[B, P, n]` -> the same.
     pub(crate) fn means(&self, x: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
-        let rows = x.index_select(1, &self.pedestrians);
-        let rows = rows.view([batch, self.scenes, self.length, width]);
+        let rows = x.index_select(1, &self.pedestrians).view([batch, self.scenes, self.length, width]);
         let means = (&rows * &self.shares).sum_dim_intlist([2i64].as_slice(), true, None::<Kind>);
-        let rows = means.expand_as(&rows).reshape([batch, -1, width]);
-        rows.index_select(1, &self.places)
+        means.expand_as(&rows).reshape([batch, -1, width]).index_select(1, &self.places)
     }
 
     pub(crate) fn shallow_clone(&self) -> Self {

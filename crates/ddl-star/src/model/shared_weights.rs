@@ -45,7 +45,7 @@ pub(super) struct SharedWeights(RefCell<Vec<Use>>);
 
 impl LearnedMap {
     /// Shapes: `x` `[.., inputs]` -> `[.., outputs]`.
-    pub(super) fn of(self, x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
+    pub(super) fn apply(self, x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
         match self {
             Self::Affine => x.linear(weight, Some(bias)),
             Self::Norm if x.device().is_cuda() && !x.requires_grad() && x.numel() > MANY => {
@@ -82,7 +82,7 @@ impl SharedWeights {
     /// The map of `x`, of which only [`gradient`](Self::gradient) gives the gradients of the weights.
     pub(super) fn used(&self, map: LearnedMap, x: &Tensor, tensors: &[Tensor], weight: usize) -> Tensor {
         let [of_weight, bias] = [weight, weight + 1].map(|index| tensors[index].detach());
-        let output = map.of(x, &of_weight, &bias);
+        let output = map.apply(x, &of_weight, &bias);
         let output = if output.requires_grad() { output } else { output.set_requires_grad(true) };
         self.0.borrow_mut().push(Use { map, weight, input: x.detach(), output: output.shallow_clone() });
         output
@@ -101,6 +101,13 @@ impl SharedWeights {
             (None, None) => tensor.f_zeros_like()?.f_reshape([-1]),
         });
         Tensor::f_cat(&gradients.collect::<Result<Vec<_>, _>>()?, 0)
+    }
+}
+
+impl Parameters {
+    /// The gradient of a loss computed by libtorch's operations only, as one vector like `flat`.
+    pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, TchError> {
+        SharedWeights::default().gradient(loss, self)
     }
 }
 
@@ -139,7 +146,7 @@ mod tests {
         tch::manual_seed(1);
         let of = |shape: &[i64]| Tensor::randn(shape, (Kind::Double, Device::Cpu));
         let (x, weight, bias) = (of(&[3, 50, 32]) * 9.0 + 4.0, of(&[32]), of(&[32]));
-        let apart = norm_of_many(&x, &weight, &bias) - LearnedMap::Norm.of(&x, &weight, &bias);
+        let apart = norm_of_many(&x, &weight, &bias) - LearnedMap::Norm.apply(&x, &weight, &bias);
         assert!(apart.abs().max().double_value(&[]) < 1e-12, "{apart}");
     }
 }

@@ -105,14 +105,14 @@ pub(super) fn numbers(tensor: &Tensor) -> Buffer {
 
 /// What computes one pass through a network.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Engine<'a> {
+pub(crate) enum TensorEngine<'a> {
     /// libtorch, on any device and in any precision.
     Torch(&'a TorchBackend),
     /// Kernels, on the CPU in `f32`.
     Kernels(&'a KernelPass),
 }
 
-impl Engine<'_> {
+impl TensorEngine<'_> {
     /// The columns of the output layer's weight for the noise, `[outputs, noise]`: they shape the expected metric.
     pub(super) fn noise_weight(&self, layer: Linear, config: &StarConfig) -> Tensor {
         match self {

@@ -14,7 +14,7 @@ const SECOND_MOMENT: &str = "second_moment";
 const PROGRESS: &str = "progress";
 
 /// Vectors of the size of the weights, with their names.
-type Vectors<'a> = [(&'static str, &'a Tensor)];
+type NamedVectors<'a> = [(&'static str, &'a Tensor)];
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct TrainerProgress {
@@ -32,7 +32,7 @@ pub(crate) fn save(
     parameters: &Parameters,
     adam: &Adam,
     progress: &[f64],
-    vectors: &Vectors<'_>,
+    vectors: &NamedVectors<'_>,
     origin: &Origin,
     path: &Path,
 ) -> Result<(), StarError> {
@@ -52,7 +52,7 @@ pub(crate) fn save(
 pub(crate) fn load<const N: usize>(
     parameters: &Parameters,
     adam: &mut Adam,
-    vectors: &Vectors<'_>,
+    vectors: &NamedVectors<'_>,
     most_steps: u64,
     origin: &Origin,
     path: &Path,

@@ -1,7 +1,7 @@
 //! The loss of a batch, and its gradient with respect to all learned numbers as one vector.
 
 use crate::StarError;
-use crate::model::{Engine, KernelPass, Layers, NoiseInput, TorchBackend, TorchNetwork};
+use crate::model::{KernelPass, Layers, NoiseInput, TensorEngine, TorchBackend, TorchNetwork};
 use crate::training::draws::StepDraw;
 use crate::training::loss::{mean_distance, mean_squared_distance};
 use crate::training::prepared::TrainingBatch;
@@ -23,7 +23,7 @@ pub(crate) fn by_torch(
 ) -> Result<(Tensor, Tensor), StarError> {
     let parameters = network.parameters();
     let torch = TorchBackend::training(parameters, Mode::Train);
-    let loss = loss(&network.layers, objective, batch, noise, Engine::Torch(&torch))?;
+    let loss = loss(&network.layers, objective, batch, noise, TensorEngine::Torch(&torch))?;
     let gradient = torch.gradient(&loss, parameters)?;
     Ok((loss, gradient))
 }
@@ -49,7 +49,7 @@ pub(crate) fn by_kernels(
         .map(|(part, seed, noise, noise_weight)| {
             let pass = KernelPass::new(kernels, Mode::Train, seed, noise_weight);
             let share = part.scenes.pedestrians() as f64 / pedestrians as f64;
-            let loss = loss(layers, objective, &part, noise, Engine::Kernels(&pass))? * share;
+            let loss = loss(layers, objective, &part, noise, TensorEngine::Kernels(&pass))? * share;
             let gradient = pass.gradient(&loss, layers, count)?;
             Ok((loss.detach(), gradient))
         })
@@ -82,7 +82,7 @@ fn loss(
     objective: Objective,
     batch: &TrainingBatch,
     noise: Tensor,
-    pass: Engine<'_>,
+    pass: TensorEngine<'_>,
 ) -> Result<Tensor, StarError> {
     let (scenes, goals) = (&batch.scenes, &batch.goals);
     let after = |frames: usize| {

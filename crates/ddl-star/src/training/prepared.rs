@@ -99,8 +99,7 @@ impl PreparedBatches {
         let goals = match &self.goals {
             None => scenes.positions.f_get(WINDOW as i64 - 1)?,
             Some(goals) => {
-                let goals = windows.iter().flat_map(|&index| &goals[index]);
-                let goals: Vec<f64> = goals.flatten().copied().collect();
+                let goals: Vec<f64> = windows.iter().flat_map(|&index| &goals[index]).flatten().copied().collect();
                 tensor(&goals, &[-1, 2], (self.kind, self.device))?
             }
         };

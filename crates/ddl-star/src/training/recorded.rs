@@ -1,7 +1,7 @@
 //! Training steps on a card: a batch that is visited often is recorded and replayed.
 
 use crate::StarError;
-use crate::cuda_graph::{Recorder, Recording};
+use crate::cuda_graph::{RecordedWork, Recorder};
 use crate::training::draws::StepDraw;
 use tch::Tensor;
 
@@ -27,7 +27,7 @@ enum BatchStep {
     /// After this number of visits.
     Computed(usize),
     Recorded {
-        recording: Recording,
+        recording: RecordedWork,
         loss: Tensor,
         gradient: Tensor,
     },

@@ -200,8 +200,7 @@ impl Trainer {
         let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
         tch::manual_seed(draw.libtorch);
         if let Some(kernels) = &self.kernels {
-            let varied = parts.iter().map(|part| part.varied(draw.turn.as_ref(), jitter));
-            let varied: Vec<TrainingBatch> = varied.collect();
+            let varied: Vec<TrainingBatch> = parts.iter().map(|part| part.varied(draw.turn.as_ref(), jitter)).collect();
             drop(generator);
             return gradient::by_kernels(network, kernels, objective, varied, draw);
         }

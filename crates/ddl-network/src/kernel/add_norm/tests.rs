@@ -3,7 +3,7 @@
 use crate::kernel::add_norm::{AddNorm, Decisions, Normal};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::tests::chance::Decided;
-use crate::kernel::tests::numbers::{Numbers, assert_close};
+use crate::kernel::tests::numbers::{SeededNumbers, assert_close};
 use ddl_simd::{Dispatch, InstructionSet, Kernel, Simd};
 use proptest::prelude::*;
 
@@ -54,7 +54,7 @@ struct NormCase {
 
 impl NormCase {
     fn new(seed: u64, width: usize, rows: usize) -> Self {
-        let mut numbers = Numbers::seeded(seed);
+        let mut numbers = SeededNumbers::seeded(seed);
         Self {
             width,
             x: numbers.even(rows * width, 2.0),

@@ -9,7 +9,7 @@ use crate::kernel::dropout::Dropout;
 use crate::kernel::encoder_layer::forward::ROWS;
 use crate::kernel::encoder_layer::forward_results::{ForwardResults, NormalisedRows};
 use crate::kernel::encoder_layer::layer::{Dropouts, EncoderKernel};
-use crate::kernel::feed_forward::Gradients;
+use crate::kernel::feed_forward::LayerGradients;
 use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 
@@ -28,7 +28,7 @@ impl EncoderKernel {
         let [mut of_z, mut of_fed, mut through] = [0; 3].map(|_| Buffer::any(count));
         let second = Sublayer { norm: &self.norm2, map: None, normal: &forward_results.normal2, dropout: dropouts.fed };
         self.sublayer_backward(&second, gy, [&mut of_z, &mut of_fed], [n2, c2, &mut [], &mut []]);
-        let mut grads = Gradients { w1, b1, w2, b2 };
+        let mut grads = LayerGradients { w1, b1, w2, b2 };
         self.feed_forward.backward(&forward_results.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
         add_to(&mut of_z, &through);
         // The buffers are reused; their contents are no longer needed.

@@ -4,7 +4,7 @@ use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::encoder_layer::{CachedKeyValues, Dropouts, EncoderKernel, Sizes};
 use crate::kernel::scenes::Scenes;
-use crate::kernel::tests::numbers::{Numbers, bits, lists};
+use crate::kernel::tests::numbers::{SeededNumbers, bits, lists};
 use ddl_simd::{Dispatch, InstructionSet};
 use rayon::ThreadPoolBuilder;
 
@@ -23,11 +23,11 @@ struct LayerCase {
 }
 
 /// Output, and gradients of the input, of the weights and of the cache.
-type Results = [Vec<f32>; 4];
+type LayerResults = [Vec<f32>; 4];
 
 impl LayerCase {
     fn new(seed: u64, sizes: Sizes, scenes: &[usize], p: f64) -> Self {
-        let mut numbers = Numbers::seeded(seed);
+        let mut numbers = SeededNumbers::seeded(seed);
         let visible = numbers.visible(scenes, 1);
         let scenes = Scenes::new(scenes, lists(scenes, &visible));
         let count = 2 * scenes.pedestrians() * sizes.width;
@@ -56,7 +56,7 @@ impl LayerCase {
         layer
     }
 
-    fn spatial(&self, layer: &EncoderKernel) -> Results {
+    fn spatial(&self, layer: &EncoderKernel) -> LayerResults {
         let frames = self.scenes.throughout();
         let (y, forward_results) = layer.spatial_attention(&self.x, frames, self.dropouts, true);
         let (alone, _) = layer.spatial_attention(&self.x, frames, self.dropouts, false);
@@ -74,7 +74,7 @@ impl LayerCase {
     }
 
     /// The keys and values of x are also a token of the cache.
-    fn temporal(&self, layer: &EncoderKernel) -> Results {
+    fn temporal(&self, layer: &EncoderKernel) -> LayerResults {
         let mut cache = vec![layer.key_values(&self.x)];
         cache.extend(
             self.cache
@@ -123,8 +123,7 @@ fn the_number_of_threads_changes_no_bit() {
 fn gradients_are_slopes() {
     let scenes = [4, 1, 6];
     let moved = |numbers: &[f32], direction: &[f32], by: f64| -> Vec<f32> {
-        let moved = numbers.iter().zip(direction);
-        let moved = moved.map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32);
+        let moved = numbers.iter().zip(direction).map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32);
         moved.collect()
     };
     let times = |numbers: &[f32], factor: f32| -> Vec<f32> { numbers.iter().map(|number| number * factor).collect() };

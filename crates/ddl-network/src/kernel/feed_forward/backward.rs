@@ -2,8 +2,6 @@
 //! So only gx, which is small (`rows * width` for each group), has to be summed over the groups. The groups, and so the
 //! sums, do not depend on the number of threads.
 
-use std::ops::DerefMut;
-
 use crate::kernel::buffer::{Buffer, add_to};
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use crate::kernel::dropout::Dropout;
@@ -13,6 +11,7 @@ use crate::kernel::product::{BLOCK, End, Start, add_transposed_product, multiply
 use crate::kernel::threads::run_each;
 use ddl_simd::{LANES, Simd, TiledKernel};
 use fearless_simd::prelude::*;
+use std::ops::DerefMut;
 
 const GROUPS: usize = 8;
 /// Number of rows after which the groups' gx are added: these rows fit the second-level cache.
@@ -33,7 +32,7 @@ impl FeedForward {
         gy: &[f32],
         dropout: Option<Dropout>,
         gx: &mut [f32],
-        grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
+        grads: &mut LayerGradients<impl DerefMut<Target = [f32]>>,
     ) {
         let (width, hidden) = (self.width(), self.hidden());
         assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
@@ -160,7 +159,7 @@ fn deactivate<S: Simd>(simd: S, hidden: &[f32], scale: f32, gradient: &mut [f32]
 
 /// Gradients of the weights, with the shapes of [`FeedForward::update`].
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Gradients<N = Vec<f32>> {
+pub(crate) struct LayerGradients<N = Vec<f32>> {
     /// `[hidden, width]`, by rows.
     pub(crate) w1: N,
     /// `[hidden]`.
@@ -172,7 +171,7 @@ pub(crate) struct Gradients<N = Vec<f32>> {
 }
 
 #[cfg(test)]
-impl Gradients {
+impl LayerGradients {
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
         Self {
             w1: vec![0.0; hidden * width],
@@ -183,7 +182,7 @@ impl Gradients {
     }
 }
 
-impl<N: DerefMut<Target = [f32]>> Gradients<N> {
+impl<N: DerefMut<Target = [f32]>> LayerGradients<N> {
     pub(super) fn check(&self, width: usize, hidden: usize) {
         let lengths = [&self.w1, &self.b1, &self.w2, &self.b2].map(|part| part.len());
         let expected = [hidden * width, hidden, width * hidden, width];

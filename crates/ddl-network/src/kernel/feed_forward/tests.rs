@@ -5,10 +5,8 @@ mod exact;
 use crate::kernel::Dropout;
 use crate::kernel::feed_forward::FeedForward;
 use ddl_simd::{Dispatch, InstructionSet};
-use exact::{Case, Sum};
+use exact::{FeedForwardCase, Sum, UNIT};
 use proptest::prelude::*;
-
-const UNIT: f64 = 1.0 / 16_777_216.0;
 
 /// Each result is within `steps` roundings of the terms of its sum, and within its doubt.
 #[track_caller]
@@ -21,7 +19,7 @@ fn assert_near(name: &str, results: &[f32], exact: &[Sum], steps: usize) {
     }
 }
 
-fn layers(case: &Case) -> Vec<FeedForward> {
+fn layers(case: &FeedForwardCase) -> Vec<FeedForward> {
     let sets = InstructionSet::available();
     assert!(sets.contains(&InstructionSet::Portable));
     let mut layers = vec![case.layer(); sets.len()];
@@ -31,7 +29,7 @@ fn layers(case: &Case) -> Vec<FeedForward> {
     layers
 }
 
-fn check(case: &Case) {
+fn check(case: &FeedForwardCase) {
     let exact = case.exact();
     let (width, hidden, rows) = (case.width, case.hidden, case.x.len() / case.width);
     for layer in layers(case) {
@@ -57,13 +55,13 @@ fn the_error_bounds_hold_at_the_edges() {
         (33, 300, 531, 0.9),
     ] {
         let dropout = Some(Dropout { p, seed: 11 });
-        check(&Case::new(width, hidden, rows, dropout));
+        check(&FeedForwardCase::new(width, hidden, rows, dropout));
     }
 }
 
 #[test]
 fn what_is_not_a_number_stays_in_its_row() {
-    let mut case = Case::new(32, 64, 12, None);
+    let mut case = FeedForwardCase::new(32, 64, 12, None);
     case.x[5 * 32 + 3] = f32::NAN;
     for layer in layers(&case) {
         let (y, gx, grads) = case.run(&layer);
@@ -90,12 +88,12 @@ proptest! {
         rows in 0..150_usize,
         dropout in dropouts(),
     ) {
-        check(&Case::new(width, hidden, rows, dropout));
+        check(&FeedForwardCase::new(width, hidden, rows, dropout));
     }
 
     #[test]
     fn derivatives_are_added(hidden in 1..100_usize, rows in 1..80_usize, dropout in dropouts()) {
-        let case = Case::new(32, hidden, rows, dropout);
+        let case = FeedForwardCase::new(32, hidden, rows, dropout);
         let layer = case.layer();
         let (_, gx, once) = case.run(&layer);
         let (mut again, mut twice) = (gx.clone(), once.clone());

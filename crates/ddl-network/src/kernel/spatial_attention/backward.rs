@@ -95,8 +95,7 @@ impl Buffered<'_, SceneBackward<'_>> {
 fn weigh<S: Simd, const DROP: bool>(simd: S, buffers: &mut SceneBuffers, task: &SceneTask<'_>, key: usize) {
     let (keys, values) = (simd.read_twice(&buffers.keys[key]), simd.read_twice(&buffers.values[key]));
     let codes = buffers.codes.chunks_exact(task.scene.pedestrians);
-    let queries = buffers.queries.iter().zip(&buffers.mixed_gradients);
-    let queries = queries.zip(buffers.inner.iter().zip(codes));
+    let queries = buffers.queries.iter().zip(&buffers.mixed_gradients).zip(buffers.inner.iter().zip(codes));
     let results = buffers.weights.iter_mut().zip(&mut buffers.score_gradients);
     for (two, (((query, gradient), ([largest, inner], codes)), (weight, score_gradient))) in
         queries.zip(results).enumerate()

@@ -77,8 +77,7 @@ impl LaneBits {
 fn hash(RowKey([low, high]): RowKey, key: u32, head: u32) -> u32 {
     let value = (key << 8).wrapping_add(head) ^ low;
     let value = (value ^ (value >> 16)).wrapping_mul(0x7feb_352d);
-    let value = (value ^ (value >> 15)).wrapping_add(high);
-    let value = value.wrapping_mul(0x846c_a68b);
+    let value = (value ^ (value >> 15)).wrapping_add(high).wrapping_mul(0x846c_a68b);
     value ^ (value >> 16)
 }
 

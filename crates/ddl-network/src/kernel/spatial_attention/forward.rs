@@ -43,7 +43,7 @@ impl Buffered<'_, SceneForward<'_>> {
         let (keys, values) = (&buffers.keys[..], &buffers.values[..]);
         let queries = buffers.queries.iter().zip(task.twos.clone());
         for (pair, (mixed, (query, two))) in rows.zip(queries).enumerate() {
-            let seen = task.scene.of(two);
+            let seen = task.scene.keys_of(two);
             let weights = &mut buffers.weights[..seen.len()];
             let first = task.keys.start;
             let place = |seen: &SeenKey| seen.key() - first;

@@ -33,7 +33,7 @@ impl SceneTask<'_> {
         let Range { start, end } = self.twos;
         (start..end).step_by(TWOS_AT_ONCE).map(move |first| {
             let twos = first..end.min(first + TWOS_AT_ONCE);
-            let lists = twos.clone().map(|two| self.scene.of(two));
+            let lists = twos.clone().map(|two| self.scene.keys_of(two));
             let ends = lists.map(|seen| [seen[0].key(), seen[seen.len() - 1].key()]);
             let range = ends.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
             let [first, last] = range.unwrap_or_default();
@@ -112,7 +112,7 @@ impl SceneBuffers {
         self.codes.resize(task.twos.len() * pedestrians, 0);
         let twos = self.codes.chunks_exact_mut(pedestrians);
         for (two, codes) in task.twos.clone().zip(twos) {
-            for seen in task.scene.of(two) {
+            for seen in task.scene.keys_of(two) {
                 codes[seen.key()] = seen.code() as u8;
             }
         }

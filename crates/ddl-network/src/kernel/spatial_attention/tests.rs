@@ -5,7 +5,7 @@ use crate::kernel::heads::HEAD_WIDTH;
 use crate::kernel::spatial_attention::dropout::WeightDecisions;
 use crate::kernel::spatial_attention::queries::TWOS_AT_ONCE;
 use crate::kernel::tests::attention::attention;
-use crate::kernel::tests::numbers::{Numbers, assert_close, lists};
+use crate::kernel::tests::numbers::{SeededNumbers, assert_close, lists};
 use crate::kernel::{Dropout, Scenes};
 use ddl_simd::{Dispatch, InstructionSet};
 use proptest::prelude::*;
@@ -23,7 +23,7 @@ struct SceneCase {
 
 impl SceneCase {
     fn new(seed: u64, heads: usize, sizes: &[usize], (entries, frames): (usize, usize), bound: f32) -> Self {
-        let mut numbers = Numbers::seeded(seed);
+        let mut numbers = SeededNumbers::seeded(seed);
         let pedestrians: usize = sizes.iter().sum();
         let rows = entries * pedestrians * heads * HEAD_WIDTH;
         Self {

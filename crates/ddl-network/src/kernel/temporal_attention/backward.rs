@@ -53,8 +53,7 @@ impl TemporalBackward<'_> {
             simd.store(product, &mut taken.0);
         }
         let mut query_gradient = [simd.splat(0.0); DEPTH];
-        let tokens = self.cache.iter().chain([&self.newest]);
-        let tokens = tokens.zip(&mut self.token_gradients);
+        let tokens = self.cache.iter().chain([&self.newest]).zip(&mut self.token_gradients);
         for ((weight, taken), (token, gradients)) in powers.iter().zip(&*taken).zip(tokens) {
             let weight = simd.load(&weight.0);
             let score_gradient = weight * (simd.load(&taken.0) - mean);

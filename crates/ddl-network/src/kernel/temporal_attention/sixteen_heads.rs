@@ -57,7 +57,7 @@ impl SixteenHeads {
     #[inline(always)]
     pub(super) fn load<S: Simd>(self, simd: S, from: &[f32]) -> Vectors<S> {
         let first = if self.first < from.len() { self.first } else { self.first % from.len() };
-        if self.whole()
+        if self.is_whole()
             && let Some(numbers) = from[first..].first_chunk()
         {
             return loaded(simd, numbers);
@@ -85,7 +85,7 @@ impl SixteenHeads {
     /// Adds to the numbers. The slice begins with the group.
     #[inline(always)]
     pub(super) fn add<S: Simd>(self, simd: S, terms: Vectors<S>, into: &mut [f32]) {
-        if self.whole()
+        if self.is_whole()
             && let Some(numbers) = into.first_chunk_mut()
         {
             let mut sums = loaded(simd, numbers);
@@ -103,7 +103,7 @@ impl SixteenHeads {
     /// Stores the numbers. The slice begins with the group.
     #[inline(always)]
     pub(super) fn store<S: Simd>(self, simd: S, values: Vectors<S>, into: &mut [f32]) {
-        if self.whole()
+        if self.is_whole()
             && let Some(numbers) = into.first_chunk_mut()
         {
             stored(simd, values, numbers);
@@ -116,7 +116,7 @@ impl SixteenHeads {
 
     /// Whether there are sixteen heads.
     #[inline(always)]
-    fn whole(self) -> bool {
+    fn is_whole(self) -> bool {
         self.numbers == GROUP_NUMBERS
     }
 }
@@ -183,7 +183,7 @@ pub(super) fn soften<S: Simd>(
 ) -> Floats<S> {
     let mut largest = simd.splat(f32::NEG_INFINITY);
     for (token, power) in cache.iter().chain([&newest]).zip(&mut *powers) {
-        if prefetched && place.whole() {
+        if prefetched && place.is_whole() {
             place.prefetch(simd, token.key);
             place.prefetch(simd, token.value);
         }

@@ -4,7 +4,7 @@ use crate::kernel::heads::AttentionKernel;
 use crate::kernel::heads::HEAD_WIDTH;
 use crate::kernel::temporal_attention::KeyValue;
 use crate::kernel::tests::attention::{Attention, attention};
-use crate::kernel::tests::numbers::{Numbers, assert_close, bits};
+use crate::kernel::tests::numbers::{SeededNumbers, assert_close, bits};
 use ddl_simd::{Dispatch, InstructionSet};
 use proptest::prelude::*;
 
@@ -21,7 +21,7 @@ const BEFORE: f32 = 0.25;
 
 impl TemporalCase {
     fn new(seed: u64, heads: usize, rows: usize, cached: usize, bound: f32) -> Self {
-        let mut numbers = Numbers::seeded(seed);
+        let mut numbers = SeededNumbers::seeded(seed);
         let count = rows * heads * HEAD_WIDTH;
         Self {
             heads,

@@ -4,9 +4,9 @@ use fastrand::Rng;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A generator of reproducible numbers.
-pub(crate) struct Numbers(Rng);
+pub(crate) struct SeededNumbers(Rng);
 
-impl Numbers {
+impl SeededNumbers {
     pub(crate) fn seeded(seed: u64) -> Self {
         Self(Rng::with_seed(seed))
     }

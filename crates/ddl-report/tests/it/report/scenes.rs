@@ -1,10 +1,9 @@
 //! Futures of whole scenes: the protocol `joint`.
 
+use super::{cells, five_folds, markdown, shown, turning};
 use ddl_data::Convention;
 use ddl_eval::{FutureCollisions, JointScores, Protocol};
 use ddl_report::Report;
-
-use super::{cells, five_folds, markdown, shown, turning};
 
 #[test]
 fn whole_futures_have_tables_of_their_own() {

@@ -1,10 +1,9 @@
 //! The main tables of a benchmark.
 
+use super::{cells, five_folds, of_forecaster};
 use ddl_data::Convention;
 use ddl_eval::Protocol;
 use ddl_report::Report;
-
-use super::{cells, five_folds, of_forecaster};
 
 #[test]
 fn a_summary_has_every_forecaster_once_under_each_protocol_with_other_errors() {

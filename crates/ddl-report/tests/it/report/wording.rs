@@ -1,9 +1,8 @@
 //! Wording of reports where rows could be misread.
 
+use super::{cells, five_folds, line, markdown, of_forecaster};
 use ddl_eval::{Protocol, ResultRow};
 use ddl_report::Report;
-
-use super::{cells, five_folds, line, markdown, of_forecaster};
 
 #[test]
 fn a_line_that_lacks_folds_is_not_ranked_against_one_that_has_them() {

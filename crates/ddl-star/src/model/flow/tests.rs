@@ -17,16 +17,16 @@ type Bounds = (MotionBounds<f64>, bool);
 
 /// A plain Euler step of `dt` seconds, or a step within bounds with the given remaining time.
 #[derive(Debug, Clone, Copy)]
-enum Step {
+enum FlowStep {
     Euler { dt: f64 },
     Bounded(Bounds, StepTime<f64>),
 }
 
-fn tensor_step(p: &Tensor, goal: &Tensor, factor: &Tensor, step: Step) -> Tensor {
+fn tensor_step(p: &Tensor, goal: &Tensor, factor: &Tensor, step: FlowStep) -> Tensor {
     let constants = |time_step: f64| FlowConstants { sigma: SIGMA, time_step };
     match step {
-        Step::Euler { dt } => natural_gradient_step(p, goal, factor, constants(dt)),
-        Step::Bounded((bounds, absolute), time) => {
+        FlowStep::Euler { dt } => natural_gradient_step(p, goal, factor, constants(dt)),
+        FlowStep::Bounded((bounds, absolute), time) => {
             let like = |numbers: &[f64]| Tensor::from_slice(numbers).to_kind(p.kind());
             let bounds = StepBounds {
                 top_speed: like(&[bounds.top_speed()]),
@@ -39,23 +39,23 @@ fn tensor_step(p: &Tensor, goal: &Tensor, factor: &Tensor, step: Step) -> Tensor
     }
 }
 
-fn twin(p: [f64; 2], goal: [f64; 2], factor: [f64; 3], step: Step) -> [f64; 2] {
+fn twin(p: [f64; 2], goal: [f64; 2], factor: [f64; 3], step: FlowStep) -> [f64; 2] {
     let [p, goal] = [p, goal].map(|place| Tensor::from_slice(&place));
     let next = tensor_step(&p, &goal, &Tensor::from_slice(&factor), step);
     let next: Vec<f64> = Vec::try_from(next).unwrap();
     [next[0], next[1]]
 }
 
-fn oracle(p: [f64; 2], goal: [f64; 2], [a, b, c]: [f64; 3], step: Step) -> [f64; 2] {
+fn oracle(p: [f64; 2], goal: [f64; 2], [a, b, c]: [f64; 3], step: FlowStep) -> [f64; 2] {
     let attractor = Attractor::new(Vector2::from(goal)).unwrap();
     let metric = CholeskyMetric::planar(a, b, c, SIGMA).unwrap();
     let start = Vector2::from(p);
     let path = match step {
-        Step::Euler { dt } => {
+        FlowStep::Euler { dt } => {
             let flow = NaturalGradientFlow::new(attractor, metric);
             rollout(&flow, &Euler, start, dt, 1)
         }
-        Step::Bounded((bounds, absolute), time) => {
+        FlowStep::Bounded((bounds, absolute), time) => {
             let bounds = if absolute { bounds.absolute() } else { bounds };
             let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
             let flow = NaturalGradientFlow::new(attractor, metric);
@@ -117,8 +117,8 @@ fn gradients_of_a_chain(
     for t in 0..HORIZON {
         let (done, left, dt) = (t as usize, (HORIZON - t) as usize, 0.4);
         let step = match bounds {
-            None => Step::Euler { dt },
-            Some(bounds) => Step::Bounded(bounds, StepTime { done, left, dt }),
+            None => FlowStep::Euler { dt },
+            Some(bounds) => FlowStep::Bounded(bounds, StepTime { done, left, dt }),
         };
         positions = tensor_step(&positions, &goals, &factors.get(t), step);
         path.push(positions.shallow_clone());
@@ -143,7 +143,7 @@ proptest! {
         dt in 1e-3..10.0f64,
         (bounds, time) in bounds(0.4),
     ) {
-        for step in [Step::Euler { dt }, Step::Bounded(bounds, time)] {
+        for step in [FlowStep::Euler { dt }, FlowStep::Bounded(bounds, time)] {
             let (ours, theirs) = (twin(p, goal, factor, step), oracle(p, goal, factor, step));
             let difference = (ours[0] - theirs[0]).hypot(ours[1] - theirs[1]);
             prop_assert!(difference < 1e-6, "{step:?}: {ours:?} against {theirs:?}");

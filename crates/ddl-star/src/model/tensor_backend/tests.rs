@@ -47,19 +47,23 @@ fn network(config: &StarConfig, kind: Kind) -> TorchNetwork {
 }
 
 /// A loss and its gradient: by kernels and tape in single precision, by libtorch only in double precision.
-fn gradient(config: &StarConfig, kind: Kind, loss: impl FnOnce(&TorchNetwork, Engine<'_>) -> Tensor) -> (f64, Tensor) {
+fn gradient(
+    config: &StarConfig,
+    kind: Kind,
+    loss: impl FnOnce(&TorchNetwork, TensorEngine<'_>) -> Tensor,
+) -> (f64, Tensor) {
     let network = network(config, kind);
     let parameters = network.parameters();
     let kernels = network.kernels().unwrap();
     assert_eq!(kernels.is_some(), kind == Kind::Float, "{kind:?}");
     let (loss, gradient) = if let Some(kernels) = kernels {
         let pass = KernelPass::new(&kernels, Mode::Evaluate, 0, network.copy_noise_weight());
-        let loss = loss(&network, Engine::Kernels(&pass));
+        let loss = loss(&network, TensorEngine::Kernels(&pass));
         let gradient = pass.gradient(&loss, &network.layers, parameters.layout().count());
         (loss, Tensor::from_slice(&gradient.unwrap()))
     } else {
         let torch = TorchBackend::training(parameters, Mode::Evaluate);
-        let loss = loss(&network, Engine::Torch(&torch));
+        let loss = loss(&network, TensorEngine::Torch(&torch));
         let gradient = torch.gradient(&loss, parameters).unwrap();
         (loss, gradient)
     };
@@ -67,7 +71,7 @@ fn gradient(config: &StarConfig, kind: Kind, loss: impl FnOnce(&TorchNetwork, En
 }
 
 /// The mean square of single steps from true positions.
-fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor {
+fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: TensorEngine<'_>) -> Tensor {
     let kind = network.kind;
     let batch = batch(windows, kind);
     let ones = Tensor::ones([1, 16], (kind, tch::Device::Cpu));
@@ -78,7 +82,7 @@ fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) 
     (forecast - truth).square().mean(None::<Kind>)
 }
 
-fn walk(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor {
+fn walk(windows: &[Window], network: &TorchNetwork, pass: TensorEngine<'_>) -> Tensor {
     let batch = batch(windows, network.kind);
     let goals = batch.positions.narrow(0, WINDOW as i64 - 1, 1) + 0.3;
     let noise = NoiseInput::Expected;
@@ -88,7 +92,7 @@ fn walk(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor 
 }
 
 /// A loss, with the largest relative errors of it and of its gradient.
-type Compared = (fn(&[Window], &TorchNetwork, Engine<'_>) -> Tensor, [f64; 2]);
+type Compared = (fn(&[Window], &TorchNetwork, TensorEngine<'_>) -> Tensor, [f64; 2]);
 
 #[test]
 fn kernels_and_tape_give_the_gradients_of_libtorch() {
@@ -113,10 +117,10 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
 }
 
 /// The input of a forecast: windows, goals, noise, step rule, shares.
-type Question = (Vec<Window>, Vec<Vec<Vec<[f64; 2]>>>, Noise, StepRule, Option<Vec<Vec<f64>>>);
+type RolloutQuestion = (Vec<Window>, Vec<Vec<Vec<[f64; 2]>>>, Noise, StepRule, Option<Vec<Vec<f64>>>);
 
 /// Several goals or several noise vectors, with the whole metric or shares of it.
-fn questions(rule: StepRule) -> Vec<Question> {
+fn questions(rule: StepRule) -> Vec<RolloutQuestion> {
     // Close to the goal, rounding decides the direction of a plain step, so goals for plain steps are far away.
     let beyond = if rule == StepRule::Euler { 20.0 } else { 0.0 };
     let [_, many, alone] = scenes();
@@ -144,8 +148,8 @@ fn questions(rule: StepRule) -> Vec<Question> {
     questions
 }
 
-fn answers(network: &dyn ForecastWindows, questions: &[Question]) -> Vec<WindowRollout> {
-    let answer = |(windows, goals, noise, rule, shares): &Question| {
+fn answers(network: &dyn ForecastWindows, questions: &[RolloutQuestion]) -> Vec<WindowRollout> {
+    let answer = |(windows, goals, noise, rule, shares): &RolloutQuestion| {
         let shares = shares.as_deref();
         network.forecast_windows(windows, goals, *noise, *rule, shares)
     };
@@ -177,7 +181,7 @@ fn kernels_give_the_forecasts_of_libtorch() {
     let [bounded, euler] = [StepRule::Bounded, StepRule::Euler].map(questions);
     for config in configs() {
         let name = name(&config);
-        let agree = |plain: &MotionNetwork, torch: TorchNetwork, questions: &[&[Question]]| {
+        let agree = |plain: &MotionNetwork, torch: TorchNetwork, questions: &[&[RolloutQuestion]]| {
             let weights = torch.parameters().to_weights().unwrap();
             assert_eq!(plain.copy_weights().unwrap(), weights, "{name}");
             let torch = torch.into_forecaster();

@@ -2,10 +2,14 @@
 
 use crate::kernel::Dropout;
 use crate::kernel::feed_forward::dropout::reference;
-use crate::kernel::feed_forward::{FeedForward, Gradients};
-use crate::kernel::tests::numbers::Numbers;
+use crate::kernel::feed_forward::{FeedForward, LayerGradients};
+use crate::kernel::tests::numbers::SeededNumbers;
 
-pub(super) struct Case {
+/// The relative error of one rounding.
+pub(super) const UNIT: f64 = 1.0 / 16_777_216.0;
+
+/// A layer with its input and the gradient of its output.
+pub(super) struct FeedForwardCase {
     pub(super) width: usize,
     pub(super) hidden: usize,
     pub(super) w1: Vec<f32>,
@@ -34,9 +38,9 @@ impl Sum {
     }
 }
 
-impl Case {
+impl FeedForwardCase {
     pub(super) fn new(width: usize, hidden: usize, rows: usize, dropout: Option<Dropout>) -> Self {
-        let mut numbers = Numbers::seeded((width * 1_000_003 + hidden * 1009 + rows) as u64);
+        let mut numbers = SeededNumbers::seeded((width * 1_000_003 + hidden * 1009 + rows) as u64);
         let (inner, outer) = (1.0 / (width as f32).sqrt(), 1.0 / (hidden as f32).sqrt());
         Self {
             width,
@@ -61,10 +65,10 @@ impl Case {
         layer
     }
 
-    pub(super) fn run(&self, layer: &FeedForward) -> (Vec<f32>, Vec<f32>, Gradients) {
+    pub(super) fn run(&self, layer: &FeedForward) -> (Vec<f32>, Vec<f32>, LayerGradients) {
         // The passes overwrite both.
         let [mut y, mut gx] = [vec![f32::NAN; self.x.len()], vec![f32::NAN; self.x.len()]];
-        let mut grads = Gradients::zeros(self.width, self.hidden);
+        let mut grads = LayerGradients::zeros(self.width, self.hidden);
         layer.forward(&self.x, self.dropout, &mut y);
         layer.backward(&self.x, &self.gy, self.dropout, &mut gx, &mut grads);
         (y, gx, grads)
@@ -102,7 +106,7 @@ impl Case {
                     back += term;
                     back_size += term.abs();
                 }
-                let in_doubt = sum.abs() <= (width + 2) as f64 * super::UNIT * size;
+                let in_doubt = sum.abs() <= (width + 2) as f64 * UNIT * size;
                 let active = if sum > 0.0 { factor } else { 0.0 };
                 let (sum, size) = (active * sum, factor * size);
                 let (back, back_size) = (active * back, factor * back_size);
