@@ -83,8 +83,7 @@ proptest! {
             let batch = session.next_batch(batch);
             let made = session.answer(batch.windows()).unwrap();
             for ((scene, window), answer) in batch.scenes.into_iter().zip(&batch.windows).zip(&made) {
-                let answers = to.entry(scene.unwrap()).or_default();
-                answers.push((window.frames()[7], bits::of(answer.forecast())));
+                to.entry(scene.unwrap()).or_default().push((window.frames()[7], bits::of(answer.forecast())));
             }
         };
         let rest = (0..3).cycle().take(60).map(|scene| (scene, false));
@@ -184,8 +183,7 @@ fn interleaved_recordings_are_answered_as_each_alone() {
     assert!(!finished.stderr.contains("error"), "{finished:?}");
     let mut answers = BTreeMap::<String, Vec<Value>>::new();
     for mut line in json_lines::<Value>(&finished.succeeds()) {
-        let scene = line.as_object_mut().unwrap().remove("scene").unwrap();
-        let scene = scene.as_str().unwrap().to_owned();
+        let scene = line.as_object_mut().unwrap().remove("scene").unwrap().as_str().unwrap().to_owned();
         answers.entry(scene).or_default().push(line);
     }
     assert!(answers == expected, "other answers than alone");

@@ -17,8 +17,7 @@ const PACK: &str = "pack --benchmark . --out models";
 fn benchmark(profile: &str, convention: Convention, folds: &[&str]) -> Place {
     let place = Place::empty();
     let conditions = Conditions::new(convention, convention.headline_rule(), Protocol::Fair, crowd::FOLD, "");
-    let measured = baseline::measure(&conditions, &crowd::windows(4, 20));
-    let measured = measured.unwrap().remove(0);
+    let measured = baseline::measure(&conditions, &crowd::windows(4, 20)).unwrap().remove(0);
     let mut tasks = Vec::new();
     for (&fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {
         let row = |forecaster: &str, min_ade| {

@@ -83,10 +83,8 @@ fn assert_changes_no_other_column(certified: &str, plain: &str) {
 fn every_format_has_the_same_hypotheses_and_certificates() {
     let place = Place::with_model();
     let tracks = own_tracks::three_pedestrians(10);
-    let position_at = |moment, id| {
-        let row = tracks.iter().find(|row| (row.0, row.1) == (moment, id));
-        row.map(|&(.., x, y)| [x, y]).unwrap()
-    };
+    let position_at =
+        |moment, id| tracks.iter().find(|row| (row.0, row.1) == (moment, id)).map(|&(.., x, y)| [x, y]).unwrap();
     let forecast = |options: &str| place.forecast(&tracks, options).succeeds();
     let mut lines: Vec<Value> = json_lines(&forecast("--format jsonl --certificate"));
     let certified = forecast("--certificate");
@@ -186,8 +184,7 @@ fn forecasts_move_with_the_origin_of_the_map() {
         }
         for hypothesis in there.chunks_exact(FRAMES) {
             assert!(hypothesis.iter().all(|row| row["certified"] == true));
-            let left = hypothesis.iter().map(|row| numbers(row, ["distance_to_goal"])[0]);
-            let left: Vec<f64> = left.collect();
+            let left: Vec<f64> = hypothesis.iter().map(|row| numbers(row, ["distance_to_goal"])[0]).collect();
             assert!(left.windows(2).all(|pair| pair[1] < pair[0] || pair[0] == 0.0), "{left:?}");
         }
     }

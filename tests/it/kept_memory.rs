@@ -53,8 +53,7 @@ fn hypotheses_of(live: &mut Session<&Ddl>, rows: &[Row]) -> Vec<Value> {
 
 fn hypotheses_in(lines: &str) -> Vec<Value> {
     let hypotheses_of_line = |line: Value| -> Value {
-        let hypotheses = line["hypotheses"].as_array().unwrap().iter();
-        hypotheses.map(|one| json!([one["weight"], one["positions"]])).collect()
+        line["hypotheses"].as_array().unwrap().iter().map(|one| json!([one["weight"], one["positions"]])).collect()
     };
     json_lines::<Value>(lines).into_iter().map(hypotheses_of_line).collect()
 }
@@ -152,8 +151,7 @@ nowhere/hall.memory => nowhere/hall.memory: cannot write this file
         place.run_on(&input, &format!("{LINE} --memory {file}")).says(words).fails();
     }
     // The memory would overwrite the forecasts.
-    let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));
-    same.says("would be lost").fails();
+    place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory")).says("would be lost").fails();
     let after = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
     assert!(before == after);
     let damaged = "damaged.memory is not a readable scene memory";
@@ -172,8 +170,7 @@ fn a_link_is_followed() {
     let place = Place::with_model();
     std::os::unix::fs::symlink("hall.memory", place.at("link.memory")).unwrap();
     let input = own_tracks::csv(&rows(0..60));
-    let finished = place.run_on(&input, &format!("{LINE} --memory link.memory"));
-    finished.says("link.memory remembers").succeeds();
+    place.run_on(&input, &format!("{LINE} --memory link.memory")).says("link.memory remembers").succeeds();
     assert!(std::fs::symlink_metadata(place.at("link.memory")).unwrap().is_symlink());
     assert!(!place.read("hall.memory").is_empty() && place.at("hall.memory.lock").is_file());
 }
@@ -182,8 +179,7 @@ fn a_link_is_followed() {
 fn a_model_without_a_memory_branch_is_refused_before_anything_is_read() {
     let place = Place::empty();
     let mut config = drawn_model::config(Variant::Full);
-    let proposal = config.goals.proposal.as_mut().unwrap();
-    proposal.network.memory = None;
+    config.goals.proposal.as_mut().unwrap().network.memory = None;
     let windows = crowd::training_windows().into_iter().step_by(50);
     drawn_model::write(config, &windows.collect::<Vec<_>>(), &place.at("run"));
     place.fails("forecast - --model run --memory hall.memory", &["has no memory branch"]);
@@ -195,8 +191,7 @@ fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
     let mut first = LiveProgram::start(&place, &format!("--whole --frame-step 10 {KEPT}"));
     first.write(&(own_tracks::csv(&rows(0..30)) + "\n"));
     assert!(first.line()["observed_until"].is_i64());
-    let second = place.run_on("", &format!("{LINE} {KEPT}"));
-    second.says("another process, or a watch of this process").fails();
+    place.run_on("", &format!("{LINE} {KEPT}")).says("another process, or a watch of this process").fails();
     #[cfg(unix)]
     {
         use ddl_tests::processes;

@@ -90,8 +90,7 @@ fn no_variant_of_the_model_sees_the_future() {
         never_sees_the_future(&model);
         for request in [Request::one(), Request::joint()] {
             let forecasts = |windows: &[Window]| {
-                let answers = model.forecast(windows, &request)?.into_iter();
-                Ok(answers.map(Answer::into_forecast).collect())
+                Ok(model.forecast(windows, &request)?.into_iter().map(Answer::into_forecast).collect())
             };
             never_sees_the_future(&Made(forecasts));
         }
@@ -144,8 +143,7 @@ fn online(model: &Ddl, window: &Window, last: i64) -> Vec<Vec<u64>> {
     let recording = scrambled_after(dataset.recording(window.recording()).unwrap(), last);
     let dataset = Dataset::own(vec![recording]).unwrap();
     let windows = [window.without_future()];
-    let windows = model.goal_model().remembering(&windows, &dataset, Remembering::Online);
-    let windows = windows.unwrap();
+    let windows = model.goal_model().remembering(&windows, &dataset, Remembering::Online).unwrap();
     assert!(!windows[0].remembered(0).is_empty());
     bits::of_all(&Protocol::Online.forecast(model, &windows).unwrap())
 }

@@ -41,8 +41,7 @@ impl LiveProgram {
     pub(crate) fn start(place: &Place, options: &str) -> Self {
         let line = format!("forecast - --model run --threads 1 --format jsonl {options}");
         let mut command = program::command(place.path(), &line);
-        let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
-        let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         Self { input: child.stdin.take().unwrap(), output: BufReader::new(child.stdout.take().unwrap()), child }
     }
 
@@ -68,8 +67,7 @@ impl LiveProgram {
 
 fn rows_of(rows: &[Row], frames: std::ops::Range<i64>) -> String {
     let here = rows.iter().copied().filter(|row| frames.contains(&row.0));
-    let table = own_tracks::csv(&here.collect::<Vec<_>>());
-    table.split_once('\n').unwrap().1.to_owned()
+    own_tracks::csv(&here.collect::<Vec<_>>()).split_once('\n').unwrap().1.to_owned()
 }
 
 #[test]

@@ -70,8 +70,7 @@ fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
         }
         let evaluate = "evaluate --forecasts forecasts.jsonl --name mine --out results";
         let summary = place.ok(&format!("{evaluate} {recordings_of_fold}"));
-        let line = summary.lines().find(|line| line.ends_with("  mine"));
-        let line = line.unwrap();
+        let line = summary.lines().find(|line| line.ends_with("  mine")).unwrap();
         let is_expected = line.contains(printed) && line.contains(&pedestrians.to_string());
         assert!(is_expected, "{line}");
         let report = report(&place, "results", "mine");
@@ -140,8 +139,7 @@ fn the_output_of_ddl_forecast_is_read_back() {
     let place = Place::with_model();
     let rows = own_tracks::three_pedestrians(20);
     let tracks = own_tracks::csv(&rows);
-    let recording = parse_recording(tracks.as_bytes(), "tracks", Format::Table).unwrap();
-    let windows = recording.windows(WindowRule::Complete);
+    let windows = parse_recording(tracks.as_bytes(), "tracks", Format::Table).unwrap().windows(WindowRule::Complete);
     assert_eq!(windows.len(), 1);
     let read = |options: &str, format: ExternalFormat| {
         let text = place.forecast(&rows, options).succeeds();

@@ -47,8 +47,7 @@ fn unreadable_files_are_reported_together() {
     for line in ["data mine", "train --data mine --out run"] {
         let finished = place.run(line);
         assert_eq!(finished.code, Some(1));
-        let lines = finished.stderr.lines().filter(|line| !line.starts_with("note: "));
-        let lines: Vec<&str> = lines.collect();
+        let lines: Vec<&str> = finished.stderr.lines().filter(|line| !line.starts_with("note: ")).collect();
         assert!(lines.iter().all(|line| line.starts_with("error: ")), "{finished:?}");
         assert!(lines[0].contains("mine/empty0.txt"), "{finished:?}");
         let last = "error: 12 of 14 files cannot be read; the first 10 are listed above";

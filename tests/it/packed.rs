@@ -57,8 +57,7 @@ fn a_packed_run_has_the_results_of_the_run_without_its_library() {
         assert_eq!(row.scores.stability.unwrap().certified, Some(1.0));
     }
     // Networks of this recipe learn stable rollouts, and plain Euler steps leave the learned region.
-    let rows = of_run.rows().iter().chain(of_packed.rows());
-    let mut names = rows.map(|row| &row.conditions.forecaster);
+    let mut names = of_run.rows().iter().chain(of_packed.rows()).map(|row| &row.conditions.forecaster);
     assert!(names.all(|name| !name.contains("plain Euler")));
 }
 

@@ -63,8 +63,7 @@ fn built_in_models_agree_with_libtorch_on_their_test_scenes() {
         let windows = dataset.fold(name).unwrap().test_windows(WindowRule::Published);
         let some: Vec<Window> = windows.into_iter().step_by(stride).collect();
         // Without and with remembered tracks.
-        let goals = kernels.goal_model();
-        let remembering = goals.remembering(&some, &dataset, Remembering::Online);
+        let remembering = kernels.goal_model().remembering(&some, &dataset, Remembering::Online);
         let mut difference = Difference::default();
         for window in some.iter().chain(&remembering.unwrap()) {
             let [a, b] = [&kernels, &libtorch].map(|model| Forecaster::forecast(model, window).unwrap());

@@ -58,8 +58,7 @@ fn goals_are_measured_before_the_network_is_trained() {
     let validation = measured("validation");
     let names: Vec<&str> = validation.recordings.keys().map(String::as_str).collect();
     assert_eq!(names, ["bottleneck", "corridor", "crossing", "doorway"]);
-    let crowds = crowd::dataset();
-    let whole = crowds.recording("crossing").unwrap().windows(WindowRule::Complete);
+    let whole = crowd::dataset().recording("crossing").unwrap().windows(WindowRule::Complete);
     let pedestrians: usize = whole.iter().map(Window::len).sum();
     assert_eq!(validation.recordings["crossing"].pedestrians, pedestrians);
     assert!(validation.windows.contains("crossing whole"), "{}", validation.windows);

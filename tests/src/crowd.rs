@@ -18,8 +18,7 @@ pub fn dataset() -> &'static Dataset {
 
 /// Test windows with their futures, of 2 to `most` pedestrians, spread over the whole recording.
 pub fn windows(count: usize, most: usize) -> Vec<Window> {
-    let fold = dataset().fold(FOLD).expect("the simulated scene exists");
-    let mut fitting = fold.test_windows(WindowRule::Complete);
+    let mut fitting = dataset().fold(FOLD).expect("the simulated scene exists").test_windows(WindowRule::Complete);
     fitting.retain(|window| (2..=most).contains(&window.len()));
     let available = fitting.len();
     assert!(available >= count, "{count} windows requested, {available} available");
@@ -29,8 +28,7 @@ pub fn windows(count: usize, most: usize) -> Vec<Window> {
 
 /// The windows of the training scenes.
 pub fn training_windows() -> Vec<Window> {
-    let fold = dataset().fold(FOLD).expect("the simulated scene exists");
-    fold.training_windows(WindowRule::Complete)
+    dataset().fold(FOLD).expect("the simulated scene exists").training_windows(WindowRule::Complete)
 }
 
 /// A goal estimator whose experts walk in the training scenes.

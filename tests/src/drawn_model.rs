@@ -88,8 +88,7 @@ pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
     config.data.windows = windows.len();
     config.data.pedestrians = windows.iter().map(Window::len).sum();
     std::fs::create_dir_all(folder.join("epochs")).expect("a folder can be made");
-    let network = MotionNetwork::new(config.star.clone(), config.training.seed);
-    let network = network.expect("the configuration is valid");
+    let network = MotionNetwork::new(config.star.clone(), config.training.seed).expect("the configuration is valid");
     let weights = network.copy_weights().expect("weights in memory");
     let origin = config.network_origin();
     for file in ["epochs/001.safetensors", "model.safetensors"] {

@@ -20,8 +20,7 @@ pub fn read(folder: &Path) -> Contents {
                 waiting.push(path);
                 None
             } else if kind.is_symlink() {
-                let target = std::fs::read_link(&path).expect("the link can be read");
-                Some(target.into_os_string().into_encoded_bytes())
+                Some(std::fs::read_link(&path).expect("the link can be read").into_os_string().into_encoded_bytes())
             } else if kind.is_file() {
                 Some(std::fs::read(&path).expect("the file can be read"))
             } else {

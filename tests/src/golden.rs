@@ -44,8 +44,7 @@ pub fn window() -> Window {
     for row in include_str!("../golden/tracks.csv").lines().skip(1) {
         let number = |field: &str| field.parse::<f64>().expect("a number");
         let fields: Vec<f64> = row.split(',').map(number).collect();
-        let track = tracks.entry(fields[1] as i64).or_default();
-        track.push([fields[2], fields[3]]);
+        tracks.entry(fields[1] as i64).or_default().push([fields[2], fields[3]]);
     }
     let pedestrians = tracks.keys().map(|&id| PedestrianId(id)).collect();
     let tracks = tracks.into_values().collect();

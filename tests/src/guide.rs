@@ -30,8 +30,7 @@ pub fn begins(page: &str, command: &ConsoleCommand, entry: &str) -> bool {
 
 /// The folder of the workspace.
 pub fn checkout() -> PathBuf {
-    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
-    tests.parent().unwrap().to_path_buf()
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_path_buf()
 }
 
 /// The commands of a page, given by its path in the workspace.
@@ -137,8 +136,7 @@ fn script(commands: &[ConsoleCommand], is_begun: impl Fn(&ConsoleCommand) -> boo
         let typed = command.typed.as_str();
         let run = if is_begun(command) {
             // The program `time` may not be installed.
-            let typed = typed.trim_start_matches("/usr/bin/time ");
-            let quoted = typed.replace('\'', r"'\''");
+            let quoted = typed.trim_start_matches("/usr/bin/time ").replace('\'', r"'\''");
             format!("(cd {empty}; unset DDL_DATASETS; {BEGIN} -c '{quoted}')")
         } else {
             typed.to_owned()

@@ -159,8 +159,7 @@ impl Place {
     /// Starts the program with pipes for its outputs.
     pub fn start(&self, line: &str) -> Child {
         let mut command = program::command(self.path(), line);
-        let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        command.spawn().expect("the program can be started")
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("the program can be started")
     }
 
     /// Forecasts tracks with complete observations, with the model in `run`.

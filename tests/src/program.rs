@@ -32,8 +32,7 @@ pub(crate) fn undisturbed(program: &Path, folder: &Path, command_line: &str) -> 
 
 /// Runs the program in `folder` to its end.
 pub fn run(folder: &Path, command_line: &str) -> Finished {
-    let output = command(folder, command_line).output();
-    let output = output.expect("the program can be started");
+    let output = command(folder, command_line).output().expect("the program can be started");
     Finished::new(format!("ddl {command_line}"), &output)
 }
 
@@ -75,8 +74,7 @@ impl Finished {
     pub fn fails(self) -> String {
         assert_eq!(self.code, Some(1), "{self:#?}");
         assert_eq!(self.stdout, "", "{self:#?}");
-        let lines = self.stderr.split_inclusive('\n');
-        let lines: String = lines.skip_while(|line| line.starts_with("note: ")).collect();
+        let lines: String = self.stderr.split_inclusive('\n').skip_while(|line| line.starts_with("note: ")).collect();
         let message = lines.strip_prefix("error: ").unwrap_or_default().trim_end();
         assert!(!message.is_empty() && message.lines().count() == 1, "not one error message: {self:#?}");
         for trace in ["panicked at", "RUST_BACKTRACE", "stack backtrace"] {
@@ -121,8 +119,7 @@ pub fn built(place: &Path, target: &[&str]) -> PathBuf {
 /// Cargo puts tests into `deps`, below the programs of the same profile.
 fn profile_folder() -> PathBuf {
     let test = std::env::current_exe().expect("a running test has a path");
-    let deps = test.ancestors().find(|folder| folder.ends_with("deps"));
-    let profile = deps.and_then(Path::parent);
+    let profile = test.ancestors().find(|folder| folder.ends_with("deps")).and_then(Path::parent);
     profile.expect("cargo built this test").to_path_buf()
 }
 
@@ -147,8 +144,7 @@ fn build(target: &[&str]) {
 pub const WITHOUT_LIBTORCH: &str = "needs libtorch, and this program is built without it";
 
 fn is_with_torch(program: &Path) -> bool {
-    let info = Command::new(program).args(["info", "--json"]).output();
-    let info = info.expect("the program can be started").stdout;
+    let info = Command::new(program).args(["info", "--json"]).output().expect("the program can be started").stdout;
     !String::from_utf8_lossy(&info).contains(WITHOUT_LIBTORCH)
 }
 

@@ -13,8 +13,7 @@ pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), Box<dyn Error>> {
     let (header, numbers) = rest.split_at_checked(length).ok_or("ends within its header")?;
     let header: Value = serde_json::from_slice(header)?;
     let tensors = header.as_object().ok_or("the header is not an object")?;
-    let ends = tensors.values().filter_map(|tensor| tensor["data_offsets"][1].as_u64());
-    let end = ends.max().unwrap_or(0);
+    let end = tensors.values().filter_map(|tensor| tensor["data_offsets"][1].as_u64()).max().unwrap_or(0);
     if end != numbers.len() as u64 {
         return Err(format!("{} bytes of numbers, {end} expected", numbers.len()).into());
     }

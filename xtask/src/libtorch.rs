@@ -50,8 +50,7 @@ pub(crate) fn ensure(workspace: &Workspace, request: &LibtorchRequest) -> Result
 
 fn choose(generated: &Path, request: &LibtorchRequest) -> Result<(PathBuf, &'static str)> {
     let configured = config::read(generated);
-    let variable = env::var_os("LIBTORCH").filter(|value| !value.is_empty());
-    let variable = variable.map(PathBuf::from);
+    let variable = env::var_os("LIBTORCH").filter(|value| !value.is_empty()).map(PathBuf::from);
     // Cargo passes the configured folder to every program it runs, including this one: only a different value was set
     // by the user.
     if let Some(folder) = variable.filter(|folder| configured.as_ref() != Some(folder)) {

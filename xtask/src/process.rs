@@ -37,8 +37,7 @@ pub(crate) fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program()).file_name().unwrap_or_default();
     let words = [program].into_iter().chain(command.get_args());
     let words: Vec<String> = words.map(|word| word.display().to_string()).collect();
-    let line = words.join(" ");
-    let line = line.lines().next().unwrap_or_default().to_owned();
+    let line = words.join(" ").lines().next().unwrap_or_default().to_owned();
     line.char_indices().nth(200).map_or(line.clone(), |(end, _)| format!("{} ...", &line[..end]))
 }
 

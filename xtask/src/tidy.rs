@@ -24,10 +24,8 @@ const HOME_FOLDERS: [&str; 3] = [concat!("/ho", "me/"), concat!("/ro", "ot/"), c
 
 pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let manifest = Manifest::load(workspace)?;
-    let entries = RECORDED.iter().filter_map(|name| manifest.entry(name).ok());
-    let recordings = entries.flat_map(|entry| &entry.files);
-    let pins = recordings.map(|file| [file.name.as_str(), file.sha256.as_str()]);
-    let recordings: Vec<_> = pins.collect();
+    let recordings = RECORDED.iter().filter_map(|name| manifest.entry(name).ok()).flat_map(|entry| &entry.files);
+    let recordings: Vec<_> = recordings.map(|file| [file.name.as_str(), file.sha256.as_str()]).collect();
     let summary = std::fs::read_to_string(workspace.path("docs/SUMMARY.md")).context("docs/SUMMARY.md")?;
     let mut faults = Vec::new();
     let mut pages = 0;

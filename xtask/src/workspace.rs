@@ -71,8 +71,7 @@ impl Workspace {
         let list = ["ls-files", "-z", "--cached", "--others", "--exclude-standard"];
         let list = read(self.program("git").args(list)).context("the tidy checks need git and a git checkout")?;
         let names: BTreeSet<&str> = list.split('\0').filter(|name| !name.is_empty()).collect();
-        let files = names.into_iter().map(PathBuf::from);
-        Ok(files.filter(|file| self.root.join(file).is_file()).collect())
+        Ok(names.into_iter().map(PathBuf::from).filter(|file| self.root.join(file).is_file()).collect())
     }
 
     /// The folder of the recordings, absolute, because every test runs in its own package's folder.
@@ -100,8 +99,7 @@ fn variables_to_remove() -> Vec<OsString> {
     });
     // The generated configuration has the same LIBTORCH. Without the variable, a plain `cargo build` and one started
     // here see the same environment, and nothing is rebuilt.
-    let fixed = HARMFUL.split(' ').chain(["LIBTORCH"]).map(OsString::from);
-    fixed.chain(leaking).collect()
+    HARMFUL.split(' ').chain(["LIBTORCH"]).map(OsString::from).chain(leaking).collect()
 }
 
 /// Removes a folder with what is in it, if it is there.

@@ -63,8 +63,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Five rows of people who walk in different directions.
 fn track(i: usize) -> Vec<Position> {
     let [x, y, angle] = [3.0 * (i % 5) as f64, 2.0 * (i / 5) as f64, i as f64];
-    let walked = (0..8).map(|t| 0.5 * f64::from(t));
-    walked.map(|d| [x + d * angle.cos(), y + d * angle.sin()]).collect()
+    (0..8).map(|t| 0.5 * f64::from(t)).map(|d| [x + d * angle.cos(), y + d * angle.sin()]).collect()
 }
 
 fn seconds(work: &mut impl FnMut()) -> f64 {

@@ -30,8 +30,7 @@ thread_local! {
 
 /// The words of the last failure on this thread, which stay in place until the next; empty before the first.
 pub(crate) fn last_error() -> *const c_char {
-    let text = LAST_ERROR.try_with(|last| last.borrow().as_ptr());
-    text.unwrap_or(c"".as_ptr())
+    LAST_ERROR.try_with(|last| last.borrow().as_ptr()).unwrap_or(c"".as_ptr())
 }
 
 /// Text for C, where a zero byte ends it.

@@ -58,8 +58,7 @@ pub unsafe extern "C" fn ddl_model_open(
     guarded(|| {
         // SAFETY: a text of the caller.
         let name = needed(unsafe { text(name, "name")? }, "name")?;
-        let model = needed(model, "model")?;
-        model.write(Box::into_raw(Box::new(ddl_model(LoadedModel::open(name, threads)?))));
+        needed(model, "model")?.write(Box::into_raw(Box::new(ddl_model(LoadedModel::open(name, threads)?))));
         Ok(())
     })
 }

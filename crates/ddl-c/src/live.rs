@@ -71,8 +71,7 @@ impl LivePlace {
 
     /// Writes the memory and closes its file. The error says why the file is unchanged.
     pub(crate) fn close(&self) -> Result<(), CallFailure> {
-        let notes = self.held().close();
-        let unchanged = notes.into_iter().find(|note| !matches!(note, Note::MemoryKept { .. }));
+        let unchanged = self.held().close().into_iter().find(|note| !matches!(note, Note::MemoryKept { .. }));
         unchanged.map_or(Ok(()), |note| Err(CallFailure::file(note.to_string())))
     }
 

@@ -33,8 +33,7 @@ struct NamedPath {
 fn paths_of(matches: &ArgMatches, id: &str) -> Vec<(Use, PathBuf)> {
     fn typed<P: Deref<Target = Path> + Clone + Send + Sync + 'static>(matches: &ArgMatches, id: &str) -> Vec<PathBuf> {
         // An error for arguments of another type.
-        let paths = matches.try_get_many::<P>(id).ok().flatten();
-        paths.into_iter().flatten().map(|path| path.to_path_buf()).collect()
+        matches.try_get_many::<P>(id).ok().flatten().into_iter().flatten().map(|path| path.to_path_buf()).collect()
     }
     let kinds = [
         (Use::Input, typed::<PathBuf>(matches, id)),

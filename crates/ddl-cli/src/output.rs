@@ -26,8 +26,7 @@ pub(crate) fn write_parts<T: AsRef<str>>(
     };
     write_file(path, |file| {
         parts.into_iter().try_for_each(|part| {
-            let written = file.write_all(part?.as_ref().as_bytes());
-            written.with_context(|| format!("cannot write to {}", path.display()))
+            file.write_all(part?.as_ref().as_bytes()).with_context(|| format!("cannot write to {}", path.display()))
         })
     })
 }
@@ -93,10 +92,7 @@ impl StreamOutput {
     pub(crate) fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let mut options = File::options();
         let options = options.write(true).create(true).truncate(false);
-        let open = |path: &Path| {
-            let file = options.open(path);
-            file.with_context(|| format!("cannot write {}", path.display()))
-        };
+        let open = |path: &Path| options.open(path).with_context(|| format!("cannot write {}", path.display()));
         Ok(Self { file: file_of(path).map(open).transpose()?, begun: false })
     }
 

@@ -72,8 +72,7 @@ fn tell_grouped<'a>(kind: &str, messages: impl IntoIterator<Item = (&'a str, Str
 
 pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ReadRecording>) {
     let notes = read.into_iter().flat_map(|ReadRecording { timed, .. }| {
-        let notes = timed.notes.iter().chain(&timed.guessed);
-        notes.map(move |note| (timed.recording.name(), note.to_string()))
+        timed.notes.iter().chain(&timed.guessed).map(move |note| (timed.recording.name(), note.to_string()))
     });
     tell_grouped("note", notes);
 }
@@ -130,8 +129,7 @@ pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
         let observed = recording.observe_each(recording.live_tracks(), |_| ());
         let warning = recording.speed_warning();
         let misfits = misfits_of(recording, *clock, &observed.misfits, warning.as_ref());
-        let warning = warning.map(|warning| Note::Implausible(in_frames(*clock, warning)));
-        let doubts = warning.into_iter().chain(misfits);
+        let doubts = warning.map(|warning| Note::Implausible(in_frames(*clock, warning))).into_iter().chain(misfits);
         warnings.extend(doubts.map(|note| (recording.name(), note.to_string())));
         notes.extend((!observed.has_common_frames).then(|| (recording.name(), Note::OwnClocks.to_string())));
     }

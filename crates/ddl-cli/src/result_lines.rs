@@ -37,8 +37,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
             _ => ("minADE/minFDE", "best of K"),
         };
         let of_table = || report.rows().iter().filter(|row| common(row) == common(first));
-        let folds = of_table().map(|row| row.conditions.fold.chars().count());
-        let width = folds.max().unwrap_or(0).max(10);
+        let width = of_table().map(|row| row.conditions.fold.chars().count()).max().unwrap_or(0).max(10);
         let counted = match convention {
             Convention::Own => PEDESTRIAN_WINDOWS,
             _ => "pedestrians",
@@ -81,8 +80,7 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
     if recordings.len() < 2 {
         return Ok(());
     }
-    let widths = recordings.iter().map(|recording| recording.recording.chars().count());
-    let width = widths.max().unwrap_or(0).max(10);
+    let width = recordings.iter().map(|recording| recording.recording.chars().count()).max().unwrap_or(0).max(10);
     let label = first.conditions.label();
     let column = label.chars().count().max(15);
     let of_other = other.map(ResultRow::by_recording).unwrap_or_default();

@@ -63,8 +63,7 @@ fn advice(error: &anyhow::Error) -> Option<&'static str> {
 }
 
 fn kinds(error: &anyhow::Error) -> impl Iterator<Item = ErrorKind> {
-    let causes = error.chain();
-    causes.filter_map(|cause| Some(cause.downcast_ref::<Error>()?.kind()))
+    error.chain().filter_map(|cause| Some(cause.downcast_ref::<Error>()?.kind()))
 }
 
 #[cfg(test)]

@@ -142,8 +142,7 @@ impl Units {
         let rate = rate && self.rate_given().is_none();
         let rate = self.remembered.rate_setting().filter(|_| rate);
         let positions = self.homography.is_none() && self.remembered.homography.is_some();
-        let taken = rate.into_iter().chain(positions.then(|| "its homography".to_owned()));
-        let taken: Vec<String> = taken.collect();
+        let taken: Vec<String> = rate.into_iter().chain(positions.then(|| "its homography".to_owned())).collect();
         (!taken.is_empty()).then(|| {
             format!(
                 "the units are those of the run's training ({}); give --fps, --dt, --frame-step or --homography if \
@@ -203,8 +202,7 @@ impl Units {
             Some(none) if none.as_os_str() == "none" => return Ok(None),
             Some(path) => path,
         };
-        let text = small_file::read(path)?;
-        let homography = text.parse().with_context(|| path.display().to_string())?;
+        let homography = small_file::read(path)?.parse().with_context(|| path.display().to_string())?;
         Ok(Some(homography))
     }
 

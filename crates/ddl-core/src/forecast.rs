@@ -145,8 +145,7 @@ impl Forecast {
     /// Scale of Student's t (metres) of pedestrian `i`, `t` + 1 steps ahead, around the hypothesis that it follows, if
     /// known; see [`Spread`].
     pub fn scale(&self, i: usize, t: usize) -> Option<f64> {
-        let spread = self.spread.as_ref()?;
-        Some(spread.scales[i * HORIZON..][..HORIZON][t])
+        Some(self.spread.as_ref()?.scales[i * HORIZON..][..HORIZON][t])
     }
 
     /// The pace of pedestrian `i`, for which its regions hold; `None` for forecasts without a [spread](Spread).

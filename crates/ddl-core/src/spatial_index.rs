@@ -17,8 +17,7 @@ impl SpatialIndex {
     /// An index of these positions (m, finite). A place is identified by its index in `positions`.
     #[must_use]
     pub fn new(positions: &[Position]) -> Self {
-        let places = positions.iter().zip(0..);
-        let places = places.map(|(&position, index)| GeomWithData::new(position, index));
+        let places = positions.iter().zip(0..).map(|(&position, index)| GeomWithData::new(position, index));
         Self { tree: RTree::bulk_load(places.collect()) }
     }
 
@@ -42,8 +41,7 @@ impl SpatialIndex {
         // The tree compares squared distances, whose rounding may change the order, so its result only bounds the
         // search.
         let reach = nearest.map(|place| distance(place.geom())).fold(0.0, f64::max);
-        let others = self.around(centre, reach);
-        let others = others.map(|place| (distance(place.geom()), place.data as usize));
+        let others = self.around(centre, reach).map(|place| (distance(place.geom()), place.data as usize));
         let mut others: Vec<(f64, usize)> = others.filter(|&(_, other)| other != excluded).collect();
         others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         others.truncate(count);

@@ -304,8 +304,7 @@ impl Window {
     /// The index of each pedestrian in [`without_future`](Self::without_future).
     #[must_use]
     pub fn indices_in_scene(&self) -> Vec<usize> {
-        let scene = self.scene().into_iter().enumerate();
-        let scored = scene.filter(|(_, (window, _))| std::ptr::eq(*window, self));
+        let scored = self.scene().into_iter().enumerate().filter(|(_, (window, _))| std::ptr::eq(*window, self));
         scored.map(|(index, _)| index).collect()
     }
 
@@ -322,8 +321,7 @@ impl Window {
 
     fn of_same(&self, frames: Vec<i64>, pedestrians: Vec<PedestrianId>, positions: Vec<Position>) -> Self {
         let recording = Arc::clone(&self.recording);
-        let window = Self::cut(recording, self.frame_step, frames, pedestrians, positions);
-        window.with_names(self.names.clone())
+        Self::cut(recording, self.frame_step, frames, pedestrians, positions).with_names(self.names.clone())
     }
 
     /// The window restricted to some of its pedestrians; `None` if none remain.

@@ -158,8 +158,7 @@ mod tests {
     #[test]
     fn invalid_metrics_are_refused() {
         let message = |b: f64, above: f64, sigma: f64| {
-            let metric = CholeskyMetric::new(Matrix2::new(1.0, above, b, 1.0), sigma);
-            metric.unwrap_err().to_string()
+            CholeskyMetric::new(Matrix2::new(1.0, above, b, 1.0), sigma).unwrap_err().to_string()
         };
         for sigma in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(message(0.0, 0.0, sigma).starts_with("sigma, without which P is not"));

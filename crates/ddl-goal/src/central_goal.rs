@@ -54,8 +54,7 @@ impl GoalSet {
             .array_windows::<3>()
             .map(|[a, b, c]| std::array::from_fn(|axis| c[axis] - 2.0 * b[axis] + a[axis]))
             .collect();
-        let lengths = changes.iter().map(|[x, y]| x.hypot(*y));
-        let change = lengths.sum::<f64>() / changes.len() as f64;
+        let change = changes.iter().map(|[x, y]| x.hypot(*y)).sum::<f64>() / changes.len() as f64;
         let noise = noise_share(&changes);
         let standing = if change > 0.0 { STANDING * change / mean[0].hypot(mean[1]) } else { 0.0 };
         let walking = 1.0 / (1.0 + standing.powi(2));

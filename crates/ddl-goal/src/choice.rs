@@ -107,10 +107,8 @@ mod tests {
     }
 
     fn cost(points: &Points, centres: &[[f64; 2]]) -> f64 {
-        let nearest = |i: usize| {
-            let squares = centres.iter().map(|&c| squared_distance(c, points.get(i)));
-            squares.fold(f64::INFINITY, f64::min).sqrt()
-        };
+        let nearest =
+            |i: usize| centres.iter().map(|&c| squared_distance(c, points.get(i))).fold(f64::INFINITY, f64::min).sqrt();
         (0..points.len()).map(|i| points.weight[i] * nearest(i)).sum()
     }
 

@@ -51,8 +51,7 @@ pub(crate) fn geometric_median(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2]
 fn mean(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
     let total: f64 = weights.iter().sum();
     std::array::from_fn(|axis| {
-        let pairs = points.iter().zip(weights);
-        pairs.map(|(point, weight)| weight * point[axis]).sum::<f64>() / total
+        points.iter().zip(weights).map(|(point, weight)| weight * point[axis]).sum::<f64>() / total
     })
 }
 

@@ -117,8 +117,7 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, ContentFault> {
     for frame in last_frames.clone().chain(memory.last_frame) {
         checked_frame(frame, None, [])?;
     }
-    let last_rows = of_running.clone().map(|running| running.last_row(memory.frame_step));
-    let last_rows: Option<Vec<i64>> = last_rows.collect();
+    let last_rows: Option<Vec<i64>> = of_running.clone().map(|running| running.last_row(memory.frame_step)).collect();
     let far = ContentFault::Tracks("the last row of a pedestrian lies far from its last step");
     let last_rows = last_rows.ok_or(far)?;
     if last_rows.into_iter().max() > memory.last_frame {

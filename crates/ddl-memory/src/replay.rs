@@ -52,8 +52,7 @@ impl SceneMemory {
         self.end_tracks();
         let ends = |window: &Window| window.frames()[window.steps() - 1];
         let last = windows.iter().map(ends).max();
-        let frames = recording.frames().iter().copied();
-        let mut frames: Vec<i64> = frames.filter(|frame| Some(*frame) <= last).collect();
+        let mut frames: Vec<i64> = recording.frames().iter().copied().filter(|frame| Some(*frame) <= last).collect();
         frames.sort_unstable_by_key(|frame| playback.time(*frame));
         let mut frames = frames.into_iter().peekable();
         let mut order: Vec<usize> = (0..windows.len()).collect();
@@ -62,8 +61,7 @@ impl SceneMemory {
         for index in order {
             let now = playback.now(&windows[index]);
             while let Some(frame) = frames.next_if(|frame| playback.time(*frame) < now) {
-                let positions = recording.at(frame).iter();
-                let positions = positions.map(|seen| (seen.pedestrian, seen.position));
+                let positions = recording.at(frame).iter().map(|seen| (seen.pedestrian, seen.position));
                 self.observe(playback.time(frame), positions)?;
             }
             windows[index] = self.recalling(windows[index].clone(), count);
@@ -81,8 +79,7 @@ impl SceneMemory {
         let remembered: Vec<_> = (0..window.len()).map(recall).collect();
         let mut remembered = remembered.into_iter();
         let bystanders = window.bystanders().map(|window| self.recalling(window.clone(), count));
-        let window = window.with_remembered(|_| remembered.next().unwrap_or_default());
-        window.with_bystanders(bystanders)
+        window.with_remembered(|_| remembered.next().unwrap_or_default()).with_bystanders(bystanders)
     }
 
     /// Observes a whole recording, and ends all tracks.
@@ -94,8 +91,7 @@ impl SceneMemory {
         self.ensure_step_of(recording)?;
         self.end_tracks();
         for &frame in recording.frames() {
-            let positions = recording.at(frame).iter();
-            let positions = positions.map(|seen| (seen.pedestrian, seen.position));
+            let positions = recording.at(frame).iter().map(|seen| (seen.pedestrian, seen.position));
             self.observe(frame, positions)?;
         }
         self.end_tracks();

@@ -46,7 +46,6 @@ impl SceneMemory {
 
     fn held(&self) -> impl Iterator<Item = &Track> {
         let running = self.running.values().map(|running| &running.track);
-        let tracks = self.ended.iter().chain(running);
-        tracks.filter(|track| track.segments() > 0)
+        self.ended.iter().chain(running).filter(|track| track.segments() > 0)
     }
 }

@@ -28,8 +28,7 @@ impl Track {
     /// The piece with the segment nearest to a motion (the first if several are equally near), and its squared
     /// distance.
     pub(crate) fn nearest(&self, motion: &FirstMotion) -> Option<(f32, &Piece)> {
-        let distances = self.pieces.iter();
-        let distances = distances.map(|piece| (piece.nearest(motion), piece));
+        let distances = self.pieces.iter().map(|piece| (piece.nearest(motion), piece));
         distances.reduce(|least, next| if next.0 < least.0 { next } else { least })
     }
 

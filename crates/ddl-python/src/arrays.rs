@@ -12,8 +12,7 @@ use pyo3::prelude::*;
 
 /// Moves a vector into an array of this shape, without a copy.
 pub(crate) fn array<T: Element>(py: Python<'_>, flat: Vec<T>, shape: impl IntoDimension) -> PyResult<Py<PyAny>> {
-    let flat = flat.into_pyarray(py);
-    Ok(flat.reshape(shape)?.into_any().unbind())
+    Ok(flat.into_pyarray(py).reshape(shape)?.into_any().unbind())
 }
 
 /// Positions as numbers, without a copy.
@@ -56,8 +55,7 @@ pub(crate) fn tracks(
             )));
         }
     }
-    let tracks = positions.chunks_exact(steps).map(<[Position]>::to_vec);
-    Ok(tracks.collect())
+    Ok(positions.chunks_exact(steps).map(<[Position]>::to_vec).collect())
 }
 
 /// `(n, 2)` positions (metres), all finite.

@@ -110,8 +110,7 @@ impl TestSet {
         let rule: WindowRule = rule.map_or(Ok(convention.headline_rule()), parsed)?;
         let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
         let fold_by_name = dataset.fold(fold).map_err(raised)?;
-        let recordings = fold_by_name.test_recordings().iter();
-        let recordings = recordings.map(|tracks| Recording::of_ticks((*tracks).clone()));
+        let recordings = fold_by_name.test_recordings().iter().map(|tracks| Recording::of_ticks((*tracks).clone()));
         Ok(Self {
             convention,
             rule,
@@ -180,8 +179,7 @@ impl TestSet {
         let admitted = protocol.admit(made, name).map_err(of_any)?;
         let conditions = Conditions::new(self.convention, self.rule, protocol, &self.fold, name);
         let windows = Arc::clone(&self.windows);
-        let row = run(py, move |_| ResultRow::score(conditions, &windows, &admitted))?;
-        let row = row.map_err(of_any)?;
+        let row = run(py, move |_| ResultRow::score(conditions, &windows, &admitted))?.map_err(of_any)?;
         serde_json::to_string(&row).map_err(of_any)
     }
 }
@@ -214,10 +212,8 @@ pub(crate) fn evaluate_model(
         }
         Ok(())
     };
-    let evaluated = run_on(User::Calls, py, work, tell)?;
-    let rows = evaluated.map_err(raised)?.rows;
-    let rows = rows.iter().map(serde_json::to_string);
-    rows.collect::<Result<_, _>>().map_err(of_any)
+    let rows = run_on(User::Calls, py, work, tell)?.map_err(raised)?.rows;
+    rows.iter().map(serde_json::to_string).collect::<Result<_, _>>().map_err(of_any)
 }
 
 /// A report of the rows, in Markdown.

@@ -45,10 +45,8 @@ pub(crate) fn parts<'py>(
     let weights = pairs().map(|(row, k)| row.map_or(f64::NAN, |(forecast, i)| forecast.weight(i, k)));
     let goals = pairs().map(|(row, k)| row.and_then(|(forecast, i)| forecast.goal(i, k)).unwrap_or([f64::NAN; 2]));
     let certified = pairs().map(|(row, k)| row.and_then(|(forecast, i)| forecast.certified(i, k)) == Some(true));
-    let familiarity = rows.iter().map(|row| {
-        let familiarity = of_row(row).and_then(|(forecast, i)| forecast.familiarity(i));
-        familiarity.unwrap_or(f64::NAN)
-    });
+    let familiarity =
+        rows.iter().map(|row| of_row(row).and_then(|(forecast, i)| forecast.familiarity(i)).unwrap_or(f64::NAN));
     let dict = PyDict::new(py);
     observed_rows(py, observed, &dict)?;
     dict.set_item("paths", array(py, numbers(paths.collect()), [n, k, HORIZON, 2])?)?;
@@ -79,10 +77,7 @@ fn spread_and_regions(
 ) -> PyResult<()> {
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
     let spread = rows.iter().flat_map(|row| {
-        (0..HORIZON).map(move |t| {
-            let spread = of_row(row).and_then(|(forecast, i)| forecast.scale(i, t));
-            spread.unwrap_or(f64::NAN)
-        })
+        (0..HORIZON).map(move |t| of_row(row).and_then(|(forecast, i)| forecast.scale(i, t)).unwrap_or(f64::NAN))
     });
     let table = match forecast {
         Some(forecast) => forecast.regions(),
@@ -200,8 +195,7 @@ pub(crate) fn region_radii<'py>(
         let of_known = forecast_rows.iter().flat_map(|&i| rows.row(i).to_vec()).collect();
         let scales = forecast_rows.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
         let paces = forecast_rows.iter().map(|&i| {
-            let observed = (0..OBSERVED).map(|t| [0, 1].map(|axis| past.as_array()[[i, t, axis]]));
-            let observed: Vec<_> = observed.collect();
+            let observed: Vec<_> = (0..OBSERVED).map(|t| [0, 1].map(|axis| past.as_array()[[i, t, axis]])).collect();
             Pace::of(&observed, TIME_STEP, uncertainty.as_array()[i])
         });
         let spread = Spread { scales: scales.collect(), paces: paces.collect(), regions: table.into() };

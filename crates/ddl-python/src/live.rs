@@ -108,8 +108,7 @@ impl LiveHandle {
             ids.len(),
             positions.len()
         );
-        let seen = ids.as_array().into_iter().map(|id| PedestrianId(*id));
-        let seen: Vec<_> = seen.zip(positions).collect();
+        let seen: Vec<_> = ids.as_array().into_iter().map(|id| PedestrianId(*id)).zip(positions).collect();
         let words = words.into_iter().map(|(id, word)| (PedestrianId(id), word.into()));
         let names = PedestrianNames::new(words.collect());
         let of_frame = names.clone();
@@ -148,8 +147,7 @@ impl LiveHandle {
     /// The reason why the given memory is not used; `None` if it is used.
     fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = SessionTurn::take(py, &self.session)?;
-        let refused = turn.session().and_then(|session| session.place(None)?.refused());
-        Ok(refused.map(|refusal| refusal.to_string()))
+        Ok(turn.session().and_then(|session| session.place(None)?.refused()).map(|refusal| refusal.to_string()))
     }
 
     /// Writes the memory and closes its file; returns a warning, if any.

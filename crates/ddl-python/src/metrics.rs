@@ -123,8 +123,7 @@ pub(crate) fn collisions(
     let slices: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
     let n = slices.len();
     let nearest = |i: usize| {
-        let others = (0..n).filter(|j| *j != i).map(|j| closest_approach(slices[i], slices[j]));
-        others.fold(f64::INFINITY, f64::min)
+        (0..n).filter(|j| *j != i).map(|j| closest_approach(slices[i], slices[j])).fold(f64::INFINITY, f64::min)
     };
     let (collides, nearest) = py.detach(|| {
         let nearest: Vec<f64> = (0..n).map(nearest).collect();
@@ -154,8 +153,7 @@ pub(crate) fn scores(
         let (weights, goals) = (weights[index].as_ref(), goals[index].as_ref());
         forecasts.push(forecast(paths, weights, goals)?);
     }
-    let scores = run(py, move |_| Scores::evaluate(&windows, &forecasts))?;
-    let scores = scores.map_err(of_any)?;
+    let scores = run(py, move |_| Scores::evaluate(&windows, &forecasts))?.map_err(of_any)?;
     serde_json::to_string(&scores).map_err(of_any)
 }
 

@@ -160,8 +160,7 @@ impl ForecastModel {
         let mut weights = vec![f64::NAN; asked * k];
         if let Some(window) = scene.window {
             let model = Arc::clone(&self.0);
-            let sets = run(py, move |_| model.goal_model().goals(&[window]))?;
-            let mut sets = sets.map_err(of_any)?;
+            let mut sets = run(py, move |_| model.goal_model().goals(&[window]))?.map_err(of_any)?;
             let sets = sets.pop().unwrap_or_default();
             for (i, row) in scene.rows.iter().enumerate() {
                 if let Some(set) = row.and_then(|row| sets.get(row)) {

@@ -116,8 +116,7 @@ impl FuturesHandle {
                 let Some(futures) = futures else {
                     return Ok(vec![0.0; times.len() * width * height]);
                 };
-                let grids = futures.occupancy(&area, &times, radius)?;
-                let grids = grids.take_while(|_| !stop.is_asked());
+                let grids = futures.occupancy(&area, &times, radius)?.take_while(|_| !stop.is_asked());
                 Ok(grids.flat_map(|grid| grid.probabilities).collect::<Vec<f32>>())
             }
         })?;

@@ -192,14 +192,12 @@ fn all_steps<const D: usize>(
 }
 
 fn sequences<'py>(objects: &[Bound<'py, PyAny>], name: &str) -> PyResult<Vec<PyReadonlyArray2<'py, f64>>> {
-    let each = (0_usize..).zip(objects);
-    each.map(|(index, object)| sequence(object, &format!("{name}[{index}]"))).collect()
+    (0_usize..).zip(objects).map(|(index, object)| sequence(object, &format!("{name}[{index}]"))).collect()
 }
 
 fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<usize> {
     let first = arrays.first();
-    let first = first.ok_or_else(|| PyValueError::new_err(format!("{name} is empty; give at least one sequence")))?;
-    Ok(first.shape()[1])
+    Ok(first.ok_or_else(|| PyValueError::new_err(format!("{name} is empty; give at least one sequence")))?.shape()[1])
 }
 
 #[pyclass(frozen, module = "ddl_forecast._core")]

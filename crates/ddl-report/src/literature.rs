@@ -217,10 +217,7 @@ mod tests {
             assert_eq!(rows, expected_rows);
             assert!((sum - expected).abs() < 1e-9, "{sum} {expected}");
         }
-        let count = |convention| {
-            let rows = file.table_one.iter();
-            rows.filter(|row| row.convention == convention).count()
-        };
+        let count = |convention| file.table_one.iter().filter(|row| row.convention == convention).count();
         let conventions = [Some(Convention::Star), Some(Convention::SocialGan), None];
         assert_eq!(conventions.map(count), [2, 3, 6]);
     }

@@ -135,8 +135,7 @@ impl ForecastSnapshot {
     }
 
     fn of((fold, forecaster): (String, String), window: &Window, forecast: &Forecast, truths: &[&[Position]]) -> Self {
-        let truths = truths.iter().enumerate();
-        let pedestrians = truths.map(|(i, truth)| pedestrian(window, forecast, truth, i));
+        let pedestrians = truths.iter().enumerate().map(|(i, truth)| pedestrian(window, forecast, truth, i));
         Self {
             fold,
             forecaster,

@@ -30,8 +30,7 @@ fn forecasts_paths_and_pictures_have_all_numbers_at_their_places() {
         paces: vec![Pace::Walking; 2],
         regions: RegionTable::of(&[&[[1.0; 12]; 2]; 3], &[0.5]).unwrap().into(),
     };
-    let full = forecast(Some(part("goals"))).with_spread(spread).unwrap();
-    let full = full.with_certified(part("certified")).unwrap();
+    let full = forecast(Some(part("goals"))).with_spread(spread).unwrap().with_certified(part("certified")).unwrap();
     let full = full.with_familiarity(part("familiarities")).unwrap();
     let (stamp, frame_id) = (Time::of_microseconds(-1_399_995), "odom".to_owned());
     let header = &Header { stamp, frame_id };

@@ -89,8 +89,7 @@ impl NodeArguments {
     /// The full name of a topic of the node, as it is remapped.
     pub(crate) fn topic(&self, name: &str) -> String {
         let name = self.full(name);
-        let other = self.remap.iter().find(|(from, _)| self.full(from) == name);
-        other.map_or(name, |(_, to)| self.full(to))
+        self.remap.iter().find(|(from, _)| self.full(from) == name).map_or(name, |(_, to)| self.full(to))
     }
 
     /// `~` stands for the node, and other names without / at their start are in the namespace.
@@ -115,8 +114,7 @@ impl NodeArguments {
 
     /// The area of the grids, if it is given.
     pub(crate) fn fixed_area(&self) -> anyhow::Result<Option<Area>> {
-        let area = self.area.map(|[x, y, to_x, to_y]| Area::new([x, y], [to_x, to_y], self.cell));
-        Ok(area.transpose()?)
+        Ok(self.area.map(|[x, y, to_x, to_y]| Area::new([x, y], [to_x, to_y], self.cell)).transpose()?)
     }
 }
 
@@ -128,8 +126,7 @@ fn numbers<const N: usize>(text: &str) -> anyhow::Result<[f64; N]> {
 }
 
 fn space(text: &str) -> anyhow::Result<String> {
-    let space = text.strip_prefix('/').map(|_| text.to_owned());
-    space.context("begin it with /")
+    text.strip_prefix('/').map(|_| text.to_owned()).context("begin it with /")
 }
 
 /// `NAME:=VALUE`, as ROS writes it.
@@ -158,8 +155,7 @@ fn ahead(text: &str) -> anyhow::Result<f64> {
 fn short(text: &str) -> anyhow::Result<f64> {
     let [number] = numbers(text)?;
     let longest = LiveTracks::LONGEST_GAP;
-    let is_short = (0.0..=longest).contains(&number);
-    is_short.then_some(number).with_context(|| format!("give seconds from 0 to {longest}"))
+    (0.0..=longest).contains(&number).then_some(number).with_context(|| format!("give seconds from 0 to {longest}"))
 }
 
 fn positive(text: &str) -> anyhow::Result<f64> {

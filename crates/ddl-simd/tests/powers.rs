@@ -5,8 +5,7 @@
 use ddl_simd::{Dispatch, InstructionSet, Kernel, LANES, Simd};
 
 fn each_set(test: impl FnMut(Dispatch)) {
-    let sets = InstructionSet::available().into_iter();
-    sets.map(|set| Dispatch::new(set).unwrap()).for_each(test);
+    InstructionSet::available().into_iter().map(|set| Dispatch::new(set).unwrap()).for_each(test);
 }
 
 struct Powers<'a>(&'a mut [[f32; LANES]]);

@@ -65,8 +65,7 @@ impl Selection {
         if nth_log2 < smallest_log2 {
             return None;
         }
-        let kept = self.finish(margin_log2(nth_log2)?);
-        Some(kept.iter().map(|scored| scored.candidate).collect())
+        Some(self.finish(margin_log2(nth_log2)?).iter().map(|scored| scored.candidate).collect())
     }
 
     fn compact(&mut self, slack: f64) {

@@ -78,8 +78,7 @@ fn oracle(network: &dyn ProposeEndpoints, examples: &[ProposalExample]) -> f64 {
     let proposed = network.propose(&views).unwrap();
     let nearest = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
         let [x, y] = example.future[11];
-        let off = proposed.endpoints.iter().map(|end| (end[0] - x).hypot(end[1] - y));
-        off.fold(f64::INFINITY, f64::min)
+        proposed.endpoints.iter().map(|end| (end[0] - x).hypot(end[1] - y)).fold(f64::INFINITY, f64::min)
     };
     proposed.iter().zip(examples).map(nearest).sum::<f64>() / examples.len() as f64
 }
@@ -105,8 +104,7 @@ fn it_learns_where_pedestrians_go_on_a_fork() {
     // A faster pedestrian ends further away: the endpoints depend on the observation.
     let reach = |speed| {
         let proposed = after.propose(&[view(speed, 0)]).unwrap();
-        let lengths = proposed[0].endpoints.iter().map(|end| end[0].hypot(end[1]));
-        lengths.fold(0.0, f64::max)
+        proposed[0].endpoints.iter().map(|end| end[0].hypot(end[1])).fold(0.0, f64::max)
     };
     assert!(reach(1.5) > reach(0.8) + 1.0);
 }
@@ -139,8 +137,7 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
         let proposed = network.propose(&views).unwrap();
         let off = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
             let [x, y] = example.future[11];
-            let ends = proposed.endpoints[which.clone()].iter();
-            let off = ends.map(|end| (end[0] - x).hypot(end[1] - y));
+            let off = proposed.endpoints[which.clone()].iter().map(|end| (end[0] - x).hypot(end[1] - y));
             off.sum::<f64>() / which.len() as f64
         };
         let sum = proposed.iter().zip(&examples).map(off).sum::<f64>();

@@ -20,8 +20,7 @@ fn crowd(count: usize, frames: i64) -> Vec<own_tracks::Row> {
     let pedestrians: Vec<[f64; 4]> = (0..count).map(pedestrian).collect();
     let rows_at = |frame: i64| {
         let t = 0.4 * frame as f64;
-        let ids = (0..).zip(&pedestrians);
-        ids.map(move |(id, [x, y, u, v])| (frame, id, x + t * u, y + t * v))
+        (0..).zip(&pedestrians).map(move |(id, [x, y, u, v])| (frame, id, x + t * u, y + t * v))
     };
     (0..frames).flat_map(rows_at).collect()
 }

@@ -88,10 +88,7 @@ fn a_killed_benchmark_ends_in_the_same_results() {
 fn a_second_benchmark_is_refused_and_an_interrupted_one_resumes() {
     let place = Place::empty();
     let log = place.at("out/corridor-full-1/log.txt");
-    let trainings = || {
-        let log = std::fs::read_to_string(&log).unwrap_or_default();
-        log.matches("$ ddl train").count()
-    };
+    let trainings = || std::fs::read_to_string(&log).unwrap_or_default().matches("$ ddl train").count();
     for signal in ["INT", "TERM"] {
         let before = trainings();
         let mut child = begun(&place);

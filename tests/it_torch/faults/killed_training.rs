@@ -11,8 +11,7 @@ use std::time::Duration;
 
 fn start(place: &Place) -> Child {
     let mut command = program::command(place.path(), TRAIN);
-    let command = command.stdout(Stdio::null()).stderr(Stdio::null());
-    command.spawn().unwrap()
+    command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
 }
 
 fn is_writing(place: &Place) -> bool {

@@ -30,8 +30,7 @@ fn version(folder: &Path) -> Option<String> {
         return Some(text.trim().to_owned());
     }
     let module = fs::read_to_string(folder.join("version.py")).ok()?;
-    let value = module.lines().find_map(|line| line.strip_prefix("__version__"))?;
-    value.split(['\'', '"']).nth(1).map(str::to_owned)
+    module.lines().find_map(|line| line.strip_prefix("__version__"))?.split(['\'', '"']).nth(1).map(str::to_owned)
 }
 
 #[cfg(test)]

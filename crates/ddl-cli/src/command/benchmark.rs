@@ -184,8 +184,7 @@ impl Benchmark {
         tell(format_args!("plan: {tasks} tasks, {jobs} at a time with {threads} threads each, in {}", out.display()));
         let display = Display::new(&plan.tasks, self.reporting.telling.progress);
         let watch = |task: &Task, event: work::Event<'_>| display.note_event(task, event);
-        let workers = self.workers(jobs, threads)?;
-        let ends = workers.run(plan, out, &watch, &interrupt);
+        let ends = self.workers(jobs, threads)?.run(plan, out, &watch, &interrupt);
         Ok(ends)
     }
 

@@ -159,8 +159,7 @@ impl AnsweringCommand for RiskCommand {
             OutputFormat::Csv => self.csv(&lines, state.is_first_text()),
             OutputFormat::Jsonl => {
                 state.is_first_text();
-                let lines = lines.iter().map(|line| Ok(serde_json::to_string(line)? + "\n"));
-                lines.collect()
+                lines.iter().map(|line| Ok(serde_json::to_string(line)? + "\n")).collect()
             }
         }
     }

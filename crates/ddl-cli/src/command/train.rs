@@ -333,8 +333,7 @@ impl Train {
 fn warn_of_known(from: &ModelSource, fold: &Fold<'_>, share: f64, whole: &[String]) -> anyhow::Result<()> {
     let goals = GoalModel::open(from, DeviceChoice::Cpu)?;
     let is_validated = |name: &str| share > 0.0 || whole.iter().any(|kept| kept == name);
-    let recordings = fold.training_recordings().iter();
-    let recordings = recordings.filter(|recording| is_validated(recording.name()));
+    let recordings = fold.training_recordings().iter().filter(|recording| is_validated(recording.name()));
     let known = recordings.filter(|recording| goals.known_share(recording).is_some());
     let known: Vec<&str> = known.map(|recording| recording.name()).collect();
     if !known.is_empty() {

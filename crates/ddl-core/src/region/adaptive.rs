@@ -155,8 +155,7 @@ impl Pending {
             };
             Some(between(last, before, share))
         };
-        let people = self.pedestrians.iter().enumerate();
-        let seen = people.filter_map(|(i, id)| Some((i, position(id.as_ref()?)?)));
+        let seen = self.pedestrians.iter().enumerate().filter_map(|(i, id)| Some((i, position(id.as_ref()?)?)));
         Some((steps as usize - 1, seen.collect()))
     }
 

@@ -68,8 +68,7 @@ mod tests {
 
     /// Two standing pedestrians with ends 0 and 5 m away, of the weights 0.8 and 0.2.
     fn forecast() -> Forecast {
-        let positions = [[0.0, 0.0], [5.0, 0.0]].repeat(2);
-        let positions = positions.into_iter().flat_map(|end| [end; HORIZON]).collect();
+        let positions = [[0.0, 0.0], [5.0, 0.0]].repeat(2).into_iter().flat_map(|end| [end; HORIZON]).collect();
         let bare = Forecast::new(2, 2, positions, [0.8, 0.2].repeat(2), None).unwrap();
         bare.with_spread(Spread {
             scales: vec![0.5; 2 * HORIZON],

@@ -17,8 +17,7 @@ fn wrong_shapes_and_weights_are_named() {
     let mut nan = twice.clone();
     nan[13] = [f64::NAN, 0.0];
     let check = |n, k, positions: &[Position], weights: &[f64], expected: &str| {
-        let refused = Forecast::new(n, k, positions.to_vec(), weights.to_vec(), None);
-        let words = refused.unwrap_err().to_string();
+        let words = Forecast::new(n, k, positions.to_vec(), weights.to_vec(), None).unwrap_err().to_string();
         assert!(words.starts_with(expected), "{words}");
     };
     check(0, 1, &[], &[], "a forecast needs at least one pedestrian");
@@ -44,8 +43,7 @@ fn layout_is_pedestrian_hypothesis_frame_and_the_heavier_of_two_stays() {
     assert_eq!((forecast.most_likely(0), forecast.most_likely(1)), (1, 0));
     assert_eq!(forecast.single().certified(1, 0), None);
     for length in [0, 3, 5] {
-        let refused = forecast.clone().with_certified(vec![true; length]);
-        let complaint = refused.unwrap_err().to_string();
+        let complaint = forecast.clone().with_certified(vec![true; length]).unwrap_err().to_string();
         let expected = "`certified` must hold 4 entries (pedestrian, hypothesis), found";
         assert_eq!(complaint, format!("{expected} {length}"));
     }

@@ -38,8 +38,7 @@ fn parts_hold_as_many_pedestrians_as_fit() {
     let of_size = |n: i64| Window::new("r", 0, 1, ids(0..n), vec![vec![[0.0; 2]; 8]; n as usize]).unwrap();
     let windows = [1, 2, 1, 5, 1, 3].map(of_size);
     let sizes = |most: usize| -> Vec<Vec<usize>> {
-        let parts = Window::parts(&windows, most);
-        parts.map(|part| part.iter().map(Window::len).collect()).collect()
+        Window::parts(&windows, most).map(|part| part.iter().map(Window::len).collect()).collect()
     };
     assert_eq!(sizes(4), [vec![1, 2, 1], vec![5], vec![1, 3]]);
     assert_eq!(sizes(3), [vec![1, 2], vec![1], vec![5], vec![1], vec![3]]);

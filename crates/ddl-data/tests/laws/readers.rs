@@ -16,8 +16,7 @@ fn good_files_are_read() {
     ];
     for case in include_str!("readers.txt").lines().skip(2) {
         let (name, text) = case.split_once(": ").unwrap();
-        let text = text.replace("\\n", "\n").replace("\\r", "\r").replace("\\t", "\t");
-        let text = text.replace("BOM", "\u{feff}");
+        let text = text.replace("\\n", "\n").replace("\\r", "\r").replace("\\t", "\t").replace("BOM", "\u{feff}");
         let format = Format::ALL.into_iter().find(|format| format.name() == name).unwrap();
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         assert_eq!(recording.observations(), expected, "{format}: {text:?}");

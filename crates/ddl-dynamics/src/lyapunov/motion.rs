@@ -43,8 +43,7 @@ pub struct MotionEvidence<T> {
 impl<T: Real> MotionEvidence<T> {
     /// The evidence of `path` (metres, finite; the start first), with steps of `dt` seconds within `bounds`.
     pub(super) fn new(path: &[SVector<T, 2>], attractor: &Attractor<T, 2>, bounds: &MotionBounds<T>, dt: T) -> Self {
-        let coordinates = path.iter().chain([attractor.goal()]);
-        let largest_coordinate = coordinates.map(SVector::amax).fold(T::zero(), T::max);
+        let largest_coordinate = path.iter().chain([attractor.goal()]).map(SVector::amax).fold(T::zero(), T::max);
         let off = T::rounded(ROUNDINGS) * T::EPSILON * largest_coordinate;
         let rounded = |bound: T, off: T| bound * T::rounded(1.0 + ROUNDING) + off;
         let (steps, half) = (path.len().saturating_sub(1), T::rounded(0.5));

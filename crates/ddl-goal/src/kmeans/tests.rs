@@ -42,10 +42,7 @@ fn as_good_as_scikit_learn() {
     assert_eq!(reference.sets.len(), 4);
     for set in reference.sets {
         let name = &set.name;
-        let inertia = |restarts, seed| {
-            let fitted = KMeans::new(set.clusters, restarts).fit(&set.points, seed);
-            fitted.unwrap().inertia
-        };
+        let inertia = |restarts, seed| KMeans::new(set.clusters, restarts).fit(&set.points, seed).unwrap().inertia;
         // Run by run, with the same ten restarts.
         let seeds = set.inertia_of_seeds.len();
         let ours: f64 = (0..seeds as u64).map(|seed| inertia(10, seed)).sum();
@@ -138,8 +135,7 @@ proptest! {
         };
         let enough = tolerance * (variance(0) + variance(1)) / 2.0;
         let moved = |k: usize| {
-            let pairs = after(k).into_iter().zip(after(k - 1));
-            pairs.map(|(a, b)| squared_distance(a, b)).sum::<f64>()
+            after(k).into_iter().zip(after(k - 1)).map(|(a, b)| squared_distance(a, b)).sum::<f64>()
         };
         let last = (1..300).find(|&k| moved(k) <= enough).unwrap();
         prop_assume!((moved(last) - enough).abs() > 1e-9 || enough < 1e-9);

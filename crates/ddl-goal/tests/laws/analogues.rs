@@ -68,14 +68,10 @@ fn distances_weights_and_endpoints_agree_with_the_definition() {
 fn a_goal_is_the_weighted_mean_of_its_analogues() {
     let reference = reference();
     let DefinedPedestrian { track: walk, analogues, .. } = &reference.pedestrians[0];
-    let estimator = of_six(&reference.library, 2);
-    let set = estimator.estimate(&track(*walk)).unwrap();
+    let set = of_six(&reference.library, 2).estimate(&track(*walk)).unwrap();
     for (k, group) in [&analogues[..3], &analogues[3..]].into_iter().enumerate() {
         let total: f64 = group.iter().map(|analogue| analogue.weight).sum();
-        let mean = [0, 1].map(|axis| {
-            let ends = group.iter().map(|one| one.weight * one.end[axis]);
-            ends.sum::<f64>() / total
-        });
+        let mean = [0, 1].map(|axis| group.iter().map(|one| one.weight * one.end[axis]).sum::<f64>() / total);
         assert!((set.weights()[k] - total).abs() < 1e-5, "{set:?}");
         assert!(distance(set.goals()[k], mean) < 1e-4, "{set:?}");
     }

@@ -62,8 +62,7 @@ fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
 #[test]
 fn invalid_endpoints_are_reported() {
     let error_of = |ends: &[[f64; 2]], weights: &[f64], clusters| {
-        let refused = GoalSet::from_endpoints(&frame(), ends, weights, clusters);
-        refused.unwrap_err().to_string()
+        GoalSet::from_endpoints(&frame(), ends, weights, clusters).unwrap_err().to_string()
     };
     let end = [[1.0, 1.0]];
     assert!(error_of(&[], &[], 3).contains("0 endpoints"));

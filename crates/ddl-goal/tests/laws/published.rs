@@ -51,8 +51,7 @@ fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows 
 }
 
 fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEstimator {
-    let names = dataset.recordings().iter().map(Recording::name);
-    let training = names.filter(|&name| name != test_recording);
+    let training = dataset.recordings().iter().map(Recording::name).filter(|&name| name != test_recording);
     let tracks = training.flat_map(|name| windows(dataset, name, WindowRule::Complete).into_values());
     let params = GoalEstimatorParams { experts, seed: 1, ..GoalEstimatorParams::published() };
     estimator(params, tracks.collect())
@@ -104,8 +103,7 @@ fn expert_distances_are_the_published_ones() {
 fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
     let Some(dataset) = recordings() else { return };
     let estimator = published(&dataset, "eth", 100);
-    let windows = windows(&dataset, "eth", WindowRule::Published).into_values();
-    let windows: Vec<_> = windows.collect();
+    let windows: Vec<_> = windows(&dataset, "eth", WindowRule::Published).into_values().collect();
     assert_eq!(windows.len(), 2_511);
     let queries: Vec<&[[f64; 2]]> = windows.iter().map(Vec::as_slice).collect();
     let mean = mean_error(&estimator, &queries, &windows);

@@ -20,8 +20,7 @@ fn read(path: &Path, bytes: &[u8]) -> Result<SceneMemory, MemoryError> {
 /// The content with a matching first line, as after a careful edit.
 fn signed(content: &[u8]) -> Vec<u8> {
     use sha2::Digest as _;
-    let digest = sha2::Sha256::digest(content);
-    let digits: Vec<String> = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+    let digits: Vec<String> = sha2::Sha256::digest(content).iter().map(|byte| format!("{byte:02x}")).collect();
     let head = format!("ddl-memory 1 {}\n", digits.concat());
     [head.as_bytes(), content].concat()
 }

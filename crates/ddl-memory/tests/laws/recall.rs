@@ -57,8 +57,7 @@ fn distance(a: &[Position], b: &[Position]) -> f64 {
 fn reference(frames: &Frames, observed: &[Position; OBSERVED], pedestrian: Option<PedestrianId>) -> Vec<f64> {
     let others = segments(frames).into_iter().filter(|(id, runs, _)| !(*runs && Some(*id) == pedestrian));
     let nearest = others.map(|(_, _, segments)| {
-        let distances = segments.iter().map(|segment| distance(segment, observed));
-        distances.fold(f64::INFINITY, f64::min)
+        segments.iter().map(|segment| distance(segment, observed)).fold(f64::INFINITY, f64::min)
     });
     let mut nearest: Vec<f64> = nearest.filter(|d| *d < 60.0).collect();
     nearest.sort_by(f64::total_cmp);
@@ -181,9 +180,7 @@ fn ties_go_by_age() {
     }
     let observed = std::array::from_fn(|t| [0.5 * t as f64, 0.0]);
     let sides = |count| {
-        let examples = memory.recall(&observed, None, count);
-        let sides = examples.iter().map(|example| example.track[0][1] > 0.0);
-        sides.collect::<Vec<bool>>()
+        memory.recall(&observed, None, count).iter().map(|example| example.track[0][1] > 0.0).collect::<Vec<bool>>()
     };
     assert_eq!((sides(1), sides(2)), (vec![true], vec![true, false]));
 }

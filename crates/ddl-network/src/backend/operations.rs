@@ -71,10 +71,8 @@ impl<B: Backend> Memory<B> {
     /// Repeats a single batch entry `batch` times.
     #[must_use]
     pub fn repeated(&self, backend: &B, batch: usize) -> Self {
-        let of_cache = |cache: &Vec<B::KeyValues>| {
-            let cached = cache.iter();
-            cached.map(|one| backend.repeat_key_values(one, batch)).collect()
-        };
+        let of_cache =
+            |cache: &Vec<B::KeyValues>| cache.iter().map(|one| backend.repeat_key_values(one, batch)).collect();
         Self {
             caches: self.caches.iter().map(of_cache).collect(),
             tokens: self.tokens.iter().map(|x| backend.repeated(x, batch)).collect(),

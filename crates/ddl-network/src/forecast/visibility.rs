@@ -26,12 +26,10 @@ pub fn visibility(windows: &[&Window], steps: usize, half_box: f64) -> Scenes {
             seen.sort_unstable();
             seen.clone()
         };
-        let positions = positions.par_iter().enumerate().with_min_len(PART);
-        positions.map_init(Vec::new, seen).collect()
+        positions.par_iter().enumerate().with_min_len(PART).map_init(Vec::new, seen).collect()
     };
     let frames: Vec<_> = (0..steps).flat_map(|step| windows.iter().map(move |&window| (window, step))).collect();
     let size = sizes.iter().sum::<usize>().div_ceil(sizes.len().max(1));
-    let frames = frames.into_par_iter().with_min_len(PART.div_ceil(size.max(1)));
-    let seen: Vec<_> = frames.map(of_window).collect();
+    let seen: Vec<_> = frames.into_par_iter().with_min_len(PART.div_ceil(size.max(1))).map(of_window).collect();
     Scenes::new(&sizes, seen.into_iter().flatten())
 }

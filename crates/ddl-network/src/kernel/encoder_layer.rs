@@ -94,8 +94,7 @@ impl EncoderKernel {
         let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
         let mut of_query = Buffer::zeros(x.len());
         let mut of_newest = CachedKeyValues::zeros(x.len());
-        let of_cache = of_cache.iter_mut().map(|token| token.view_mut());
-        let of_tokens = of_cache.chain([of_newest.view_mut()]).collect();
+        let of_tokens = of_cache.iter_mut().map(|token| token.view_mut()).chain([of_newest.view_mut()]).collect();
         self.attention.temporal_backward(query, &views(cache), newest.view(), &of_mixed, &mut of_query, of_tokens);
         let of_inputs = [&of_query[..], &of_newest.key, &of_newest.value];
         self.project_backward(0, x, of_inputs, &mut gx, of_weights);

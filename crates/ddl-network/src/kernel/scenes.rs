@@ -236,10 +236,8 @@ mod tests {
         assert_eq!((scenes.pedestrians(), scenes.frames()), (4, 2));
         assert_eq!(scenes.ranges(), [0..1, 1..4]);
         let codes_of = |frames: SceneFrames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
-            let scenes = frames.of_entry(entry);
-            let twos = scenes.flat_map(|scene| (0..scene.ends.len()).map(move |i| scene.keys_of(i)));
-            let codes = twos.map(|seen| seen.iter().map(|seen| (seen.key(), seen.code())));
-            codes.map(Iterator::collect).collect()
+            let twos = frames.of_entry(entry).flat_map(|scene| (0..scene.ends.len()).map(move |i| scene.keys_of(i)));
+            twos.map(|seen| seen.iter().map(|seen| (seen.key(), seen.code()))).map(Iterator::collect).collect()
         };
         let first = [vec![(0, 3)], vec![(0, 1), (1, 3), (2, 2)], vec![(0, 3), (2, 3)]];
         let visible = [(0, 3), (1, 3), (2, 3)];

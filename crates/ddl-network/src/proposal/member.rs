@@ -147,8 +147,7 @@ impl AttentionKernels {
             for head in 0..self.heads {
                 let part = head * depth..(head + 1) * depth;
                 let dot = |key: &[f32]| -> f32 {
-                    let pairs = query[part.clone()].iter().zip(&key[part.clone()]);
-                    pairs.map(|(q, k)| q * k).sum()
+                    query[part.clone()].iter().zip(&key[part.clone()]).map(|(q, k)| q * k).sum()
                 };
                 let scores: Vec<f32> = keys.chunks_exact(near).map(|key| dot(key) * scale).collect();
                 let largest = scores.iter().copied().fold(0.0, f32::max);

@@ -112,7 +112,6 @@ impl ProposeEndpoints for ProposalNetwork {
     }
 
     fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, NetworkError> {
-        let chunks = views.par_chunks(CHUNK);
-        Ok(chunks.flat_map_iter(|views| self.propose_chunk(views)).collect())
+        Ok(views.par_chunks(CHUNK).flat_map_iter(|views| self.propose_chunk(views)).collect())
     }
 }

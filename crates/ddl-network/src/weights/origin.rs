@@ -19,12 +19,8 @@ impl Origin {
     /// Describes the first setting, in the order of the names, in which this origin differs from `other`. `None` if
     /// they are equal.
     pub fn difference(&self, other: &Self) -> Option<String> {
-        let names = self.0.keys().chain(other.0.keys());
-        let name = names.filter(|&name| self.0.get(name) != other.0.get(name)).min()?;
-        let in_words = |origin: &Self| {
-            let value = origin.0.get(name);
-            value.map_or_else(|| "missing".to_owned(), String::clone)
-        };
+        let name = self.0.keys().chain(other.0.keys()).filter(|&name| self.0.get(name) != other.0.get(name)).min()?;
+        let in_words = |origin: &Self| origin.0.get(name).map_or_else(|| "missing".to_owned(), String::clone);
         Some(format!("{name} is {}, not {}", in_words(self), in_words(other)))
     }
 

@@ -101,8 +101,7 @@ fn factors_reproduce_the_steps() {
                 let factors = rollout.factors.unwrap();
                 assert_eq!(factors.len(), rollout.positions.len());
                 assert_eq!(factors.len(), window.len() * 3 * HORIZON);
-                let paths = rollout.positions.chunks_exact(HORIZON);
-                let shaped = paths.zip(factors.chunks_exact(HORIZON));
+                let shaped = rollout.positions.chunks_exact(HORIZON).zip(factors.chunks_exact(HORIZON));
                 for (pair, (path, factors)) in shaped.enumerate() {
                     let (i, k) = (pair / 3, pair % 3);
                     let mut here = window.observed(i)[OBSERVED - 1];

@@ -17,8 +17,7 @@ fn furthest(backbone: BackboneKind) -> [f64; 2] {
         let alone: Vec<&Window> = alone.iter().collect();
         let alone = question.ask(&network, &alone).into_iter();
         for (i, (alone, together)) in alone.zip(together.positions.chunks(2 * HORIZON)).enumerate() {
-            let pairs = alone.positions.into_iter().zip(together);
-            let apart = pairs.map(|(a, &b)| distance(a, b)).fold(0.0, f64::max);
+            let apart = alone.positions.into_iter().zip(together).map(|(a, &b)| distance(a, b)).fold(0.0, f64::max);
             any = any.max(apart);
             if i == 0 {
                 first = first.max(apart);

@@ -14,8 +14,7 @@ fn off(config: StarConfig, window: &Window, moved: impl Fn(Position) -> Position
         let goals = goals(window, 3).into_iter();
         let goals = [goals.map(|goals| goals.into_iter().map(world).collect()).collect()];
         let rule = StepRule::Bounded;
-        let rollouts = network.forecast_windows(&observed, &goals, Noise::Expected, rule, None);
-        rollouts.unwrap().remove(0).positions
+        network.forecast_windows(&observed, &goals, Noise::Expected, rule, None).unwrap().remove(0).positions
     };
     let pairs = forecast(&|p| p).into_iter().zip(forecast(&moved));
     pairs.map(|(here, there)| distance(moved(here), there)).fold(0.0, f64::max)

@@ -18,11 +18,9 @@ fn network(variant: Variant) -> MotionNetwork {
 fn goals_noise_and_shares_that_do_not_fit_the_windows_are_refused() {
     let network = network(Variant::Full);
     let windows: Vec<Window> = WINDOWS.iter().take(6).map(Window::without_future).collect();
-    let whole = WINDOWS.iter().take(6);
-    let goals: Vec<_> = whole.map(|window| goals(window, 3)).collect();
+    let goals: Vec<_> = WINDOWS.iter().take(6).map(|window| goals(window, 3)).collect();
     let refuse = |goals: &[Goals], noise: Noise, shares: Option<&[Vec<f64>]>, expected: &str| {
-        let refused = network.forecast_windows(&windows, goals, noise, StepRule::Bounded, shares);
-        let error = refused.unwrap_err();
+        let error = network.forecast_windows(&windows, goals, noise, StepRule::Bounded, shares).unwrap_err();
         assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
         assert!(error.to_string().contains(expected), "{error}");
     };

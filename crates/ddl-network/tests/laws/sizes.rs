@@ -42,8 +42,7 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
             neighbour_width,
             ..ProposalConfig::default()
         };
-        let weights = ProposalNetwork::new(config.clone(), 1).unwrap().copy_weights();
-        let count = weights.unwrap().numbers().len();
+        let count = ProposalNetwork::new(config.clone(), 1).unwrap().copy_weights().unwrap().numbers().len();
         assert_eq!(config.parameter_count(), count);
         check(config.min_weight_count(), count);
     }

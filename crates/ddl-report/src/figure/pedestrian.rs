@@ -13,8 +13,7 @@ fn from_last<'a>(observed: &'a [Position], path: &'a [Position]) -> impl Iterato
 /// All hypotheses except the representative one; a larger weight gives a darker line.
 pub(crate) fn other_hypotheses(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian) {
     let representative = pedestrian.representative();
-    let weights = pedestrian.hypotheses.iter().map(|h| h.weight);
-    let heaviest = weights.fold(1e-9, f64::max);
+    let heaviest = pedestrian.hypotheses.iter().map(|h| h.weight).fold(1e-9, f64::max);
     for (k, hypothesis) in pedestrian.hypotheses.iter().enumerate() {
         if k == representative {
             continue;

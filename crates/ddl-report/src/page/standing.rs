@@ -70,8 +70,7 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
     let group = groups.iter().min_by_key(rank)?;
     let measured = |fold: &&str| !group.pedestrians(fold).is_empty();
     let folds: Vec<&str> = group.folds().into_iter().filter(measured).collect();
-    let lines = group.labelled();
-    let mut lines: Vec<_> = lines.map(|(line, label)| StandingLine::of(line, label, &folds)).collect();
+    let mut lines: Vec<_> = group.labelled().map(|(line, label)| StandingLine::of(line, label, &folds)).collect();
     // Lines without a mean come last; the sort is stable.
     let order = |line: &StandingLine| line.mean.map_or(f64::INFINITY, |mean| mean[0]);
     lines.sort_by(|a, b| order(a).total_cmp(&order(b)));
@@ -90,8 +89,7 @@ impl StandingLine {
         let pair = |mean: &dyn Fn(usize) -> Option<f64>| Some([mean(0)?, mean(1)?]);
         let on_fold = |fold: &&str| pair(&|at| Some(line.on_fold(fold, |s| Some(s.errors(protocol)[at]))?.mean));
         let count = |number: fn(&Scores) -> usize| -> usize {
-            let first = folds.iter().filter_map(|fold| line.on(fold).next());
-            first.map(|row| number(&row.scores)).sum()
+            folds.iter().filter_map(|fold| line.on(fold).next()).map(|row| number(&row.scores)).sum()
         };
         Self {
             label,

@@ -15,8 +15,7 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     if !groups.is_empty() {
         parts.push(Part::heading("How to read the tables"));
         let scenes = groups.iter().any(|group| group.protocol == Protocol::Joint);
-        let legends = LEGENDS.trim_end().split("\n\n");
-        let legends = legends.chain(scenes.then_some(metrics::JOINT_LEGEND));
+        let legends = LEGENDS.trim_end().split("\n\n").chain(scenes.then_some(metrics::JOINT_LEGEND));
         parts.push(Part::List(legends.map(|legend| legend.replace('\n', " ")).collect()));
     }
     parts.extend(deployable::parts(&groups));

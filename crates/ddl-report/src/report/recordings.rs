@@ -11,8 +11,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     if group.convention != Convention::Own {
         return Vec::new();
     }
-    let folds = group.folds();
-    let tables: Vec<Part> = folds.iter().filter_map(|fold| table(group, fold)).map(Part::Table).collect();
+    let tables: Vec<Part> = group.folds().iter().filter_map(|fold| table(group, fold)).map(Part::Table).collect();
     if tables.is_empty() {
         return Vec::new();
     }

@@ -70,8 +70,7 @@ struct MeasuredLine<'a> {
 impl<'a> MeasuredLine<'a> {
     /// `None` if a row has no errors by block.
     fn of(line: &'a TableLine<'a>, folds: &[&str]) -> Option<Self> {
-        let present = line.present(folds).into_iter();
-        let folds = present.map(|fold| Some((fold.to_owned(), line.blocks(fold)?)));
+        let folds = line.present(folds).into_iter().map(|fold| Some((fold.to_owned(), line.blocks(fold)?)));
         let folds = folds.collect::<Option<Vec<_>>>().filter(|folds| !folds.is_empty())?;
         Some(Self { line, folds })
     }

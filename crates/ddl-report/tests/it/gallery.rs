@@ -7,8 +7,7 @@ use ddl_report::gallery;
 
 #[test]
 fn moments_cover_the_time_of_a_fold_and_few_windows_are_all_shown() {
-    let dataset = Dataset::simulated(1);
-    let windows = dataset.fold("corridor").unwrap().test_windows(WindowRule::Complete);
+    let windows = Dataset::simulated(1).fold("corridor").unwrap().test_windows(WindowRule::Complete);
     let forecasts = Protocol::Fair.forecast(&ConstantVelocity::LastStep, &windows).unwrap();
     let moments = gallery::moments("corridor", "CV", &windows, &forecasts).unwrap();
     assert_eq!(moments.len(), 8);

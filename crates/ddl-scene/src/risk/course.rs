@@ -26,8 +26,7 @@ pub(super) fn legs(plan: &Plan) -> Vec<CourseLeg> {
     for step in 0..HORIZON {
         let first = step as f64;
         while from < first + 1.0 {
-            let row = rows.next_if(|&row| row < first + 1.0 - SAME);
-            let to = row.unwrap_or(first + 1.0);
+            let to = rows.next_if(|&row| row < first + 1.0 - SAME).unwrap_or(first + 1.0);
             if to < from + SAME {
                 continue;
             }

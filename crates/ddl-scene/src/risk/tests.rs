@@ -39,8 +39,7 @@ fn scenes() -> impl Strategy<Value = RandomScene> {
     let speeds = vec([-1.5..1.5f64, -1.5..1.5f64], 3);
     let rows = vec((place(), 0.0..0.6f64), 3);
     let rows = (rows, 0.1..2.3f64, 2.4..6.0f64).prop_map(|(rows, second, third)| {
-        let times = [0.0, second, third].into_iter().zip(rows);
-        times.map(|(time, ([x, y], radius))| [time, x, y, radius]).collect()
+        [0.0, second, third].into_iter().zip(rows).map(|(time, ([x, y], radius))| [time, x, y, radius]).collect()
     });
     (vec(place(), 4), vec(speeds, 4), vec(0.02..1.0f64, 4), rows)
 }

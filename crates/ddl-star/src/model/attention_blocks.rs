@@ -99,8 +99,7 @@ impl AttentionBlocks {
 fn blocks(scenes: &Scenes) -> Vec<AttentionBlock> {
     let of_scene = |scene: &Range<usize>| {
         let end = scene.end;
-        let starts = scene.clone().step_by(QUERIES);
-        starts.map(move |start| start..end.min(start + QUERIES))
+        scene.clone().step_by(QUERIES).map(move |start| start..end.min(start + QUERIES))
     };
     let queries: Vec<Range<usize>> = scenes.ranges().iter().flat_map(of_scene).collect();
     let block = |queries: Range<usize>| {
@@ -174,8 +173,7 @@ mod tests {
             let ours = spatial_attention(&qkv, heads, &blocks.during(frames.clone()), 0.0);
             // All pairs, with the same definition of attention.
             let all = |part: i64| {
-                let of_heads = qkv.narrow(2, part * width, width).view([2, -1, heads, width / heads]);
-                of_heads.transpose(1, 2)
+                qkv.narrow(2, part * width, width).view([2, -1, heads, width / heads]).transpose(1, 2)
             };
             let [query, key, value] = [0, 1, 2].map(all);
             let unseen = Tensor::ones([2, 1, pedestrians, pedestrians], (Kind::Bool, cpu));

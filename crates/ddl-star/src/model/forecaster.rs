@@ -72,8 +72,7 @@ impl ForecastWindows for TorchForecaster {
     }
 
     fn copy_weights(&self) -> Result<Weights, NetworkError> {
-        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(network.parameters().to_weights()?)
+        Ok(self.network.lock().unwrap_or_else(PoisonError::into_inner).parameters().to_weights()?)
     }
 
     fn pedestrians_at_once(&self) -> usize {
@@ -91,7 +90,6 @@ impl ForecastWindows for TorchForecaster {
         let (kind, device) = self.options;
         let scenes = WindowBatch::new(&views, OBSERVED, OBSERVED, self.config.neighbour_box, device, kind)?;
         let _ = scenes.seen(0..OBSERVED);
-        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(network.roll_out_batch(batch, scenes)?)
+        Ok(self.network.lock().unwrap_or_else(PoisonError::into_inner).roll_out_batch(batch, scenes)?)
     }
 }

@@ -5,8 +5,7 @@ use tch::{Device, Kind, Tensor};
 
 /// A tensor of numbers in row-major order, in that precision on that device.
 pub(crate) fn tensor(numbers: &[f64], shape: &[i64], (kind, device): (Kind, Device)) -> Result<Tensor, StarError> {
-    let tensor = Tensor::f_from_slice(numbers)?.f_reshape(shape)?;
-    Ok(tensor.f_to_kind(kind)?.f_to_device(device)?)
+    Ok(Tensor::f_from_slice(numbers)?.f_reshape(shape)?.f_to_kind(kind)?.f_to_device(device)?)
 }
 
 /// The numbers of a tensor in row-major order, in groups of N, which divides their number.

@@ -7,8 +7,7 @@ use tch::{Kind, Tensor};
 
 /// Units of length of all pedestrians in a batch, metres. Shapes: `observed` `[T, P, 2]` -> `[1, P, 1]`.
 pub(crate) fn units(observed: &Tensor, time_step: f64) -> Tensor {
-    let steps = step_lengths(observed);
-    let relative = steps.mean_dim([0i64].as_slice(), true, None::<Kind>) / (time_step * FAST_WALK);
+    let relative = step_lengths(observed).mean_dim([0i64].as_slice(), true, None::<Kind>) / (time_step * FAST_WALK);
     let larger = relative.clamp_min(1.0);
     &larger * (larger.pow_tensor_scalar(-4) + (relative / &larger).pow_tensor_scalar(4)).pow_tensor_scalar(0.25)
 }

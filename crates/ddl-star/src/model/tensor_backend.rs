@@ -98,8 +98,7 @@ impl TensorBackend for KernelBackend {
 /// The numbers of a tensor in row-major order.
 pub(super) fn numbers(tensor: &Tensor) -> Buffer {
     let mut numbers = Buffer::any(tensor.numel());
-    let plain = tensor.detach().contiguous();
-    plain.copy_data(&mut numbers, tensor.numel());
+    tensor.detach().contiguous().copy_data(&mut numbers, tensor.numel());
     numbers
 }
 

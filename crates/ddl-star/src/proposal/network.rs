@@ -92,8 +92,7 @@ impl TorchProposals {
                 let weights = arrays::<1>(&weights.transpose(0, 1))?.into_flattened();
                 let pairs = ends.chunks_exact(per_pedestrian).zip(weights.chunks_exact(per_pedestrian));
                 let pairs = pairs.map(|(endpoints, weights)| (endpoints.to_vec(), weights.to_vec()));
-                let listed = pairs.map(|(endpoints, weights)| ProposedEndpoints { endpoints, weights });
-                Ok(listed.collect())
+                Ok(pairs.map(|(endpoints, weights)| ProposedEndpoints { endpoints, weights }).collect())
             };
             let mut of_chunk = listed(&alone)?;
             let remembers = chunk.iter().any(|view| !view.remembered.is_empty());
@@ -313,12 +312,10 @@ impl ProposeEndpoints for TorchProposer {
     }
 
     fn copy_weights(&self) -> Result<Weights, NetworkError> {
-        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(network.parameters.to_weights()?)
+        Ok(self.network.lock().unwrap_or_else(PoisonError::into_inner).parameters.to_weights()?)
     }
 
     fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, NetworkError> {
-        let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(network.propose(views)?)
+        Ok(self.network.lock().unwrap_or_else(PoisonError::into_inner).propose(views)?)
     }
 }

@@ -68,8 +68,7 @@ pub(crate) fn load<const N: usize>(
         })
     };
     let (weights, first, second) = (find(WEIGHTS)?, find(FIRST_MOMENT)?, find(SECOND_MOMENT)?);
-    let names = vectors.iter();
-    let others = names.map(|(name, _)| find(name)).collect::<Result<Vec<_>, _>>()?;
+    let others = vectors.iter().map(|(name, _)| find(name)).collect::<Result<Vec<_>, _>>()?;
     // Adam divides by the root of its second moment, so a negative value would give NaN.
     if second.lt(0.0).any().int64_value(&[]) != 0 {
         let problem = format!("{SECOND_MOMENT} holds negative numbers; delete it and run the same training again");

@@ -37,8 +37,7 @@ pub(crate) fn by_kernels(
     draw: &StepDraw,
 ) -> Result<(Tensor, Tensor), StarError> {
     let (layers, count) = (&network.layers, network.parameters().layout().count());
-    let sizes = parts.iter().map(|part| part.scenes.pedestrians());
-    let pedestrians: usize = sizes.sum();
+    let pedestrians: usize = parts.iter().map(|part| part.scenes.pedestrians()).sum();
     let jobs = parts.into_iter().zip(0..).map(|(part, index)| {
         let seed = seed_of_part(draw.kernels, index);
         (part, seed, draw.noise.shallow_clone(), network.copy_noise_weight())

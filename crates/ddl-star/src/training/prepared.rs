@@ -156,8 +156,7 @@ mod tests {
 
     #[test]
     fn jitter_moves_only_observed_positions() {
-        let dataset = Dataset::simulated(1);
-        let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+        let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
         let (device, kind) = (Device::Cpu, Kind::Double);
         let indices: Vec<usize> = (0..windows.len()).collect();
         let prepared = PreparedBatches::new((windows, None), 1, 10.0, None, (device, kind));

@@ -61,8 +61,7 @@ fn crowd(pedestrians: usize) -> Result<Window> {
 /// Seconds to push the eighth frame of a stream, the first with a forecast for all pedestrians.
 fn live_frame(clock: ClockId, model: &Ddl, window: &Window) -> Result<f64> {
     let frame = |t: usize| {
-        let pedestrians = window.pedestrians().iter().enumerate();
-        pedestrians.map(move |(i, &pedestrian)| (pedestrian, window.observed(i)[t]))
+        window.pedestrians().iter().enumerate().map(move |(i, &pedestrian)| (pedestrian, window.observed(i)[t]))
     };
     let mut least = f64::INFINITY;
     for _ in 0..3 {

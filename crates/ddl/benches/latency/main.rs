@@ -85,8 +85,7 @@ fn median<T>(clock: ClockId, runs: usize, mut work: impl FnMut() -> Result<T>) -
 fn forecasts(dataset: &Dataset, segments: usize, runs: usize) -> Result<()> {
     let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
     let transformer = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
-    let recordings = dataset.recordings().iter();
-    let mut windows = recordings.flat_map(ddl::data::Recording::observed_windows);
+    let mut windows = dataset.recordings().iter().flat_map(ddl::data::Recording::observed_windows);
     let crowded = windows.find(|window| window.len() >= 25).ok_or("no crowded scene")?;
     let window = crowded.filter_pedestrians(|i| i < 25).ok_or("nobody")?;
     let (windows, all) = (std::slice::from_ref(&window), Request::default());

@@ -90,8 +90,7 @@ pub fn evaluate_goals(
     let seconds = started.elapsed().as_secs_f64();
     // Bystanders have goals and no future.
     let with_future = |(window, sets): (&Window, Vec<GoalSet>)| {
-        let indices = window.indices_in_scene().into_iter();
-        indices.map(|i| sets[i].clone()).collect()
+        window.indices_in_scene().into_iter().map(|i| sets[i].clone()).collect()
     };
     let sets: Vec<Vec<GoalSet>> = windows.iter().zip(sets).map(with_future).collect();
     let pairs: Vec<(&Window, &GoalSet, Position)> = windows
@@ -99,8 +98,7 @@ pub fn evaluate_goals(
         .zip(&sets)
         .flat_map(|(window, sets)| {
             let ends = (0..window.len()).map(|i| window.end(i));
-            let pairs = sets.iter().zip(ends);
-            pairs.filter_map(move |(set, end)| Some((window, set, end?)))
+            sets.iter().zip(ends).filter_map(move |(set, end)| Some((window, set, end?)))
         })
         .collect();
     let errors = |name: Option<&str>| {

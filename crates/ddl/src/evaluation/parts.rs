@@ -15,6 +15,5 @@ pub(crate) fn pedestrians(windows: &[Window]) -> usize {
 
 /// The forecasts of the pedestrians that are scored.
 pub(crate) fn scored(windows: &[Window], forecasts: Vec<Forecast>) -> impl Iterator<Item = Forecast> {
-    let pairs = forecasts.into_iter().zip(windows);
-    pairs.map(|(forecast, window)| forecast.without_bystanders(window))
+    forecasts.into_iter().zip(windows).map(|(forecast, window)| forecast.without_bystanders(window))
 }

@@ -8,8 +8,7 @@ pub(crate) fn straight_lines(
     windows: &[Window],
     goals: Vec<Vec<WeightedGoals>>,
 ) -> Result<Vec<Forecast>, ForecastError> {
-    let lines = windows.iter().zip(goals);
-    lines.map(|(window, goals)| StraightLine(goals).forecast(window)).collect()
+    windows.iter().zip(goals).map(|(window, goals)| StraightLine(goals).forecast(window)).collect()
 }
 
 /// Goal sets in the form that the baselines of the evaluation take.

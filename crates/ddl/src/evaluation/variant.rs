@@ -41,8 +41,7 @@ pub(crate) enum VariantMotion {
 /// Describes the memory under a protocol. The text is the same for all folds of a convention, because they share a line
 /// of the table.
 pub(crate) fn memory_words(protocol: Protocol, model: &Ddl) -> String {
-    let convention = model.config().data.convention;
-    let folds: Vec<&str> = convention.folds_with_place_memory().collect();
+    let folds: Vec<&str> = model.config().data.convention.folds_with_place_memory().collect();
     let of_place = format!("training recordings of the same place (folds {})", folds.join(", "));
     match (protocol.gives_recording_memory(), folds.is_empty()) {
         _ if model.goal_model().memory().is_none() => String::new(),

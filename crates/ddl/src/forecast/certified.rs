@@ -151,8 +151,7 @@ impl Walked<'_> {
         integrate: impl Fn(&GoalApproach, &[[f64; 3]], &mut [Position]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
         let bounds: Vec<_> = (0..self.window.len()).map(|i| self.bounds(i)).collect();
-        let pairs = factors.par_chunks_exact(HORIZON).enumerate();
-        let pairs = pairs.zip(positions.par_chunks_exact_mut(HORIZON));
+        let pairs = factors.par_chunks_exact(HORIZON).enumerate().zip(positions.par_chunks_exact_mut(HORIZON));
         let results = pairs.map(|((pair, factors), path)| {
             let (i, hypothesis) = (pair / self.hypotheses, pair % self.hypotheses);
             let approach = GoalApproach {

@@ -287,8 +287,7 @@ impl GoalModel {
             }
         }
         if let Some((estimator, share)) = retrieval {
-            let retrieved = sets::retrieved(estimator, windows)?;
-            let retrieved = retrieved.into_iter().flatten();
+            let retrieved = sets::retrieved(estimator, windows)?.into_iter().flatten();
             for ((proposed, (frame, _)), set) in proposed.iter_mut().zip(&frames).zip(retrieved) {
                 for weight in &mut proposed.weights {
                     *weight *= 1.0 - share;
@@ -322,16 +321,12 @@ impl GoalModel {
         let sets = self.goals_without_library(windows)?;
         let nearest = |(i, set): (usize, GoalSet), window: &Window| {
             let end = end(window, i);
-            let goal = set.goals().get(set.nearest(end));
-            goal.copied().unwrap_or(end)
+            set.goals().get(set.nearest(end)).copied().unwrap_or(end)
         };
         Ok(sets
             .into_iter()
             .zip(windows)
-            .map(|(sets, window)| {
-                let pedestrians = sets.into_iter().enumerate();
-                pedestrians.map(|pedestrian| nearest(pedestrian, window)).collect()
-            })
+            .map(|(sets, window)| sets.into_iter().enumerate().map(|pedestrian| nearest(pedestrian, window)).collect())
             .collect())
     }
 

@@ -76,8 +76,7 @@ pub(crate) fn remembering<'a>(
 ) -> Result<Vec<Window>, DdlError> {
     let mut of_recording: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, window) in windows.iter().enumerate() {
-        let indices = of_recording.entry(window.recording()).or_default();
-        indices.push(index);
+        of_recording.entry(window.recording()).or_default().push(index);
     }
     let mut remembering = windows.to_vec();
     for recording in recordings {

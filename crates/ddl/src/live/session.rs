@@ -210,8 +210,7 @@ impl<M: Borrow<Ddl>> Session<M> {
         if !(frame.fract() == 0.0 && frame.abs() < FRAME_LIMIT as f64) {
             return Err(DdlError::Moment(at));
         }
-        let pushed = self.push(frame as i64, pedestrians);
-        pushed.map_err(|error| DdlError::At { at, is_time, error: error.into() })
+        self.push(frame as i64, pedestrians).map_err(|error| DdlError::At { at, is_time, error: error.into() })
     }
 
     /// Adds a frame of a scene, with the positions (m) of all pedestrians in any order, and the names of those who have

@@ -85,9 +85,7 @@ impl Ddl {
     }
 
     pub(crate) fn weights(&self) -> Result<(Weights, Option<Weights>), DdlError> {
-        let proposal = self.goals.proposal_network();
-        let proposal = proposal.map(ddl_network::ProposeEndpoints::copy_weights);
-        let proposal = proposal.transpose()?;
+        let proposal = self.goals.proposal_network().map(ddl_network::ProposeEndpoints::copy_weights).transpose()?;
         Ok((self.network.copy_weights()?, proposal))
     }
 
@@ -105,8 +103,7 @@ impl Ddl {
             return Ok(answers);
         }
         let mut regions = AdaptiveRegions::default();
-        let pairs = windows.iter().zip(answers);
-        Ok(pairs.map(|(window, answer)| answer.adapted(&mut regions, window)).collect())
+        Ok(windows.iter().zip(answers).map(|(window, answer)| answer.adapted(&mut regions, window)).collect())
     }
 
     /// Refuses certificates that no forecast of the model has.

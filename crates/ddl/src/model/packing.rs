@@ -29,8 +29,7 @@ pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<V
     tensors.push(HalfTensor { name: FINGERPRINTS.to_owned(), shape: vec![bytes.len()], bytes });
     let failed = |error: &dyn std::fmt::Display| source.wrong(format!("cannot be packed: {error}"));
     let config = serde_json::to_string(goals.config()).map_err(|error| failed(&error))?;
-    let motions = goals.motions().map(serde_json::to_string).transpose();
-    let motions = motions.map_err(|error| failed(&error))?;
+    let motions = goals.motions().map(serde_json::to_string).transpose().map_err(|error| failed(&error))?;
     let header = PackedHeader {
         layout: LAYOUT,
         sha256: digest([&config, motions.as_deref().unwrap_or_default()], &tensors),

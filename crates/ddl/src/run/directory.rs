@@ -133,8 +133,7 @@ impl RunDirectory {
         let entries = std::fs::read_dir(&folder).map_err(|error| DdlError::io(&folder, error))?;
         let mut epochs = Vec::new();
         for entry in entries {
-            let entry = entry.map_err(|error| DdlError::io(&folder, error))?;
-            let name = entry.file_name();
+            let name = entry.map_err(|error| DdlError::io(&folder, error))?.file_name();
             let number = name.to_str().and_then(|name| name.strip_suffix(".safetensors"));
             epochs.extend(number.and_then(|number| number.parse::<usize>().ok()));
         }

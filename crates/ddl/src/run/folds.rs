@@ -24,6 +24,5 @@ pub fn fold_by_name<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, Da
 }
 
 pub(crate) fn learned_from<'a>(fold: &'a Fold<'_>) -> impl Iterator<Item = &'a Recording> {
-    let learned = fold.training_recordings().iter();
-    learned.chain(fold.validation_recordings()).copied()
+    fold.training_recordings().iter().chain(fold.validation_recordings()).copied()
 }

@@ -50,7 +50,6 @@ impl<'a> Moment<'a> {
     /// The 12 frames of the forecast.
     pub fn frames(&self) -> Vec<FrameNumber> {
         let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
-        let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
-        frames.collect()
+        (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step)).collect()
     }
 }

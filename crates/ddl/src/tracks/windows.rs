@@ -39,8 +39,7 @@ impl WindowOptions {
         }
         // With clocks of their own, too, the last row is the last moment.
         let every = self.every.or(self.last.then_some(0.0));
-        let tracks = tracks.with_completeness(Completeness::of(self.whole));
-        Ok(tracks.with_max_age(self.max_age).with_interval(every))
+        Ok(tracks.with_completeness(Completeness::of(self.whole)).with_max_age(self.max_age).with_interval(every))
     }
 
     /// Whether every moment is to be forecast, as the tracks have them.

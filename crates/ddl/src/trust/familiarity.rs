@@ -87,8 +87,7 @@ impl TrainingMotions {
 
     /// Whether its numbers are possible.
     pub(crate) fn is_valid(&self) -> bool {
-        let numbers = self.mean.iter().chain(self.precision.as_flattened());
-        numbers.chain(&self.distances).all(|x| x.is_finite())
+        self.mean.iter().chain(self.precision.as_flattened()).chain(&self.distances).all(|x| x.is_finite())
             && (0.0..f64::INFINITY).contains(&self.fastest)
             && self.distances.len() == PARTS + 1
             && self.distances.is_sorted()

@@ -74,16 +74,14 @@ impl TrackFingerprints {
     fn known_from(&self, least: f64, recordings: &[&Recording]) -> Option<f64> {
         let all = recordings.iter().flat_map(|recording| tracks_of(recording)).flat_map(hashes);
         let all: BTreeSet<u32> = all.filter(|hash| hash % self.one_in == 0).collect();
-        let known = all.iter().filter(|hash| self.hashes.binary_search(hash).is_ok());
-        let known = known.count();
+        let known = all.iter().filter(|hash| self.hashes.binary_search(hash).is_ok()).count();
         let share = known as f64 / all.len().max(1) as f64;
         (known >= FEWEST && share >= least).then_some(share)
     }
 
     /// Little-endian numbers of 32 bits: the divisor, then the hashes.
     pub(crate) fn to_bytes(&self) -> Vec<u8> {
-        let numbers = std::iter::once(&self.one_in).chain(&self.hashes);
-        numbers.flat_map(|number| number.to_le_bytes()).collect()
+        std::iter::once(&self.one_in).chain(&self.hashes).flat_map(|number| number.to_le_bytes()).collect()
     }
 
     /// Reads what [`to_bytes`](Self::to_bytes) has written; `None` for anything else.
@@ -162,8 +160,7 @@ fn hash(crossings: &[Crossing; CROSSINGS]) -> u32 {
         crossings.reverse();
         crossings
     };
-    let first = (*crossings).min(exchanged);
-    let first = first.min(backwards(*crossings)).min(backwards(exchanged));
+    let first = (*crossings).min(exchanged).min(backwards(*crossings)).min(backwards(exchanged));
     let mut hasher = Sha256::new();
     for Crossing { axis, line, cell } in first {
         for number in [axis as i64, line, cell] {

@@ -242,8 +242,7 @@ impl TestSet {
     }
 
     pub(crate) fn headline_indices(&self) -> impl Iterator<Item = usize> {
-        let headline = self.rules.iter().take(1);
-        headline.flat_map(|(_, indices)| indices).copied()
+        self.rules.iter().take(1).flat_map(|(_, indices)| indices).copied()
     }
 
     /// A seeded part of the windows, in their order, with at least `pedestrians` pedestrians.
@@ -261,10 +260,7 @@ impl TestSet {
         });
         let mut taken: Vec<usize> = wanted.collect();
         taken.sort_unstable();
-        let of_part = |indices: Vec<usize>| {
-            let places = indices.into_iter();
-            places.filter_map(|i| taken.binary_search(&i).ok()).collect()
-        };
+        let of_part = |indices: Vec<usize>| indices.into_iter().filter_map(|i| taken.binary_search(&i).ok()).collect();
         let rules = self.rules.into_iter();
         Self {
             windows: taken.iter().map(|&i| self.windows[i].clone()).collect(),

@@ -20,8 +20,7 @@ const CONFIGURATIONS: [(&str, &str); 5] = [
 fn matrix(header: &mut Value) -> &mut Vec<Value> {
     let tensors = header.as_object_mut().expect("an object").values_mut();
     let mut shapes = tensors.filter_map(|tensor| tensor.get_mut("shape")?.as_array_mut());
-    let matrix = shapes.find(|shape| shape.len() == 2 && shape[0] != shape[1]);
-    matrix.expect("a model has matrices")
+    shapes.find(|shape| shape.len() == 2 && shape[0] != shape[1]).expect("a model has matrices")
 }
 
 #[test]

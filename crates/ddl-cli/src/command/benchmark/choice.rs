@@ -111,8 +111,7 @@ impl PlanOptions {
         let work = self.profile.work(name);
         let fold_names: Vec<&str> = convention.fold_names().collect();
         let folds: Vec<String> = if self.folds.is_empty() {
-            let first = fold_names.iter().take(work.folds);
-            first.map(|&fold| fold.to_owned()).collect()
+            fold_names.iter().take(work.folds).map(|&fold| fold.to_owned()).collect()
         } else {
             for fold in &self.folds {
                 one_of("fold", fold, &fold_names)?;

@@ -26,8 +26,7 @@ fn planned(words: &str) -> String {
     let train = plan.train_arguments(&plan.tasks[0], Path::new(""), 1);
     let (_, train) = train.split_at(11); // convention, data, fold, variant and seed
     let end = train.iter().position(|word| word == "--out").unwrap();
-    let scored = plan.settings.test_pedestrians;
-    let scored = scored.map_or("all".to_owned(), |n| n.to_string());
+    let scored = plan.settings.test_pedestrians.map_or("all".to_owned(), |n| n.to_string());
     format!("{} {} {scored}: {}", out.display(), plan.tasks.len(), train[..end].join(" "))
 }
 

@@ -34,8 +34,7 @@ fn the_part_grows_from_0_to_1() {
     let pace = TaskPace::of_seconds(243.0, 58.0, 65.0);
     for pace in [pace, pace.without_goals()] {
         let stages = ["goals", "train", "evaluate"].into_iter();
-        let parts = stages.flat_map(|stage| [0.0, 0.5, 1.0].map(|part| pace.at(stage, part)));
-        let parts: Vec<f64> = parts.collect();
+        let parts: Vec<f64> = stages.flat_map(|stage| [0.0, 0.5, 1.0].map(|part| pace.at(stage, part))).collect();
         assert!(parts.is_sorted() && (parts[0], parts[8]) == (0.0, 1.0), "{parts:?}");
     }
     assert!((pace.without_goals().at("train", 1.0) - 58.0 / 123.0).abs() < 1e-12);

@@ -140,8 +140,7 @@ impl Workers {
         let other = plan.with_same_goals(task);
         if let Some(other) = other.filter(|task| Record::of(task, out).is_some()) {
             let (here, there) = (task.run_folder(out), other.run_folder(out));
-            let copied = RunDirectory::new(here).copy_goals_from(&RunDirectory::new(there));
-            copied.map_err(|error| anyhow!("{error}"))?;
+            RunDirectory::new(here).copy_goals_from(&RunDirectory::new(there)).map_err(|error| anyhow!("{error}"))?;
         }
         let pace = plan.pace(task);
         // The progress of a task never decreases.

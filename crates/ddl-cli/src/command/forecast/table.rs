@@ -91,10 +91,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
                         uncertainty: table_metres(quality.uncertainty()),
                         familiarity: forecast.familiarity(i).map(table_share),
                     };
-                    let radius = |&level: &f64| {
-                        let radius = forecast.region_radius(i, hypothesis, t, level);
-                        radius.map(table_metres)
-                    };
+                    let radius = |&level: &f64| forecast.region_radius(i, hypothesis, t, level).map(table_metres);
                     let radii: Vec<Option<f64>> = regions.iter().map(radius).collect();
                     match distances.as_mut().and_then(Iterator::next) {
                         None => writer.serialize((&scene, row, radii))?,

@@ -67,8 +67,7 @@ pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::R
     }
     let text = serde_json::to_string_pretty(&reached)? + "\n";
     write(&out.join("reported.json"), text.as_bytes())?;
-    let files = packed.into_iter();
-    Ok(files.map(|(file, _, numbers)| (file, numbers)).collect())
+    Ok(packed.into_iter().map(|(file, _, numbers)| (file, numbers)).collect())
 }
 
 fn tasks(plan: &BenchmarkPlan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
@@ -93,10 +92,7 @@ fn tasks(plan: &BenchmarkPlan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> 
             .train_pedestrians
             .map_or(String::new(), |pedestrians| format!(", {pedestrians} pedestrians per epoch")),
     );
-    let full = || {
-        let tasks = plan.tasks.iter();
-        tasks.filter(|task| task.variant == Method::FULL)
-    };
+    let full = || plan.tasks.iter().filter(|task| task.variant == Method::FULL);
     let seed = seed.or_else(|| full().map(|task| task.seed).min());
     let folds = settings.convention.fold_names();
     folds

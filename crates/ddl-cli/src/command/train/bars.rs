@@ -22,15 +22,13 @@ impl TrainingBars {
             TrainingStep::Goals(step) => {
                 self.stood = format!("after {done} of {total} batches of goals");
                 let message = format!("batches, endpoint error {:.2} m", step.distance);
-                let bar = self.goals.get_or_insert_with(|| Progress::new("goals", mode));
-                bar.tell(done, total, &message);
+                self.goals.get_or_insert_with(|| Progress::new("goals", mode)).tell(done, total, &message);
             }
             TrainingStep::Network(step) => {
                 self.goals = None;
                 self.stood = format!("in epoch {}, after {done} of {total} batches", step.epoch);
                 let message = format!("batches, epoch {} loss {:.4}", step.epoch, step.loss);
-                let bar = self.network.get_or_insert_with(|| Progress::new("train", mode));
-                bar.tell(done, total, &message);
+                self.network.get_or_insert_with(|| Progress::new("train", mode)).tell(done, total, &message);
             }
         }
     }

@@ -154,8 +154,7 @@ fn decisions_are_like_chance_and_the_same_for_every_instruction_set() {
     let (rows, width) = (3000, 40);
     let case = NormCase::new(1, width, rows);
     let dropped = |set| -> Vec<bool> {
-        let results = case.run(set, Some(Dropout { p: 0.1, seed: 3 }));
-        results.gt.iter().map(|&gt| gt == 0.0).collect()
+        case.run(set, Some(Dropout { p: 0.1, seed: 3 })).gt.iter().map(|&gt| gt == 0.0).collect()
     };
     let first = dropped(InstructionSet::Portable);
     for set in InstructionSet::available() {

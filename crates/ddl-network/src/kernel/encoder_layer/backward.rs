@@ -54,8 +54,7 @@ impl EncoderKernel {
         let width = self.sizes.width;
         let (piece, count) = (ROWS * width, of_weights.iter().map(|part| part.len()).sum());
         let decisions = layer.dropout.and_then(Decisions::new);
-        let normals = layer.normal.numbers.chunks(piece);
-        let inputs = normals.zip(layer.normal.scales.chunks(ROWS)).zip(gy.chunks(piece));
+        let inputs = layer.normal.numbers.chunks(piece).zip(layer.normal.scales.chunks(ROWS)).zip(gy.chunks(piece));
         let outputs = of_x.chunks_mut(piece).zip(of_t.chunks_mut(piece));
         let mut sums = Buffer::many_zeros(gy.len().div_ceil(piece), count);
         let jobs = inputs.zip(outputs).zip(&mut sums).enumerate();
@@ -90,8 +89,7 @@ impl EncoderKernel {
         let (weight, bias) = (&mut weight[first * width * width..], &mut bias[first * width..]);
         let count = weight.len() + bias.len();
         let mut sums = Buffer::many_zeros(x.len().div_ceil(ROWS * width), count);
-        let rows = x.chunks(ROWS * width).zip(gx.chunks_mut(ROWS * width));
-        let jobs = rows.zip(&mut sums).enumerate();
+        let jobs = x.chunks(ROWS * width).zip(gx.chunks_mut(ROWS * width)).zip(&mut sums).enumerate();
         let jobs = jobs.map(|(i, ((x, gx), sums))| ProjectBackward {
             projections: &self.projections[first..],
             gradients: gradients.map(|gradient| &gradient[i * ROWS * width..][..x.len()]),
@@ -175,8 +173,7 @@ impl<const N: usize> TiledKernel for ProjectBackward<'_, N> {
         let x = MatrixColumns::whole(self.x, width);
         let mut gx = MatrixColumnsMut::whole(self.gx, width);
         let (weights, biases) = self.sums.split_at_mut(N * width * width);
-        let weights = weights.chunks_exact_mut(width * width);
-        let of_weights = weights.zip(biases.chunks_exact_mut(width));
+        let of_weights = weights.chunks_exact_mut(width * width).zip(biases.chunks_exact_mut(width));
         let parts = self.projections.iter().zip(self.gradients);
         for ((projection, gy), (weight, bias)) in parts.zip(of_weights) {
             let gy = MatrixColumns::whole(gy, width);

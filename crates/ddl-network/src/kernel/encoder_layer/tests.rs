@@ -112,8 +112,7 @@ fn the_number_of_threads_changes_no_bit() {
         let [first, others @ ..] = [1, 2, 3, 7].map(|threads| {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build();
             let run = || [case.spatial(&layer), case.temporal(&layer)];
-            let both = pool.unwrap().install(run);
-            both.map(|results| results.map(|numbers| bits(&numbers)))
+            pool.unwrap().install(run).map(|results| results.map(|numbers| bits(&numbers)))
         });
         assert!(others.iter().all(|other| *other == first), "{set:?}");
     }
@@ -123,14 +122,10 @@ fn the_number_of_threads_changes_no_bit() {
 fn gradients_are_slopes() {
     let scenes = [4, 1, 6];
     let moved = |numbers: &[f32], direction: &[f32], by: f64| -> Vec<f32> {
-        let moved = numbers.iter().zip(direction).map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32);
-        moved.collect()
+        numbers.iter().zip(direction).map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32).collect()
     };
     let times = |numbers: &[f32], factor: f32| -> Vec<f32> { numbers.iter().map(|number| number * factor).collect() };
-    let dot = |a: &[f32], b: &[f32]| -> f64 {
-        let products = a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b));
-        products.sum()
-    };
+    let dot = |a: &[f32], b: &[f32]| -> f64 { a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b)).sum() };
     for (over, p) in [(false, 0.0), (false, 0.2), (true, 0.0), (true, 0.2)] {
         let case = LayerCase::new(11, star(64), &scenes, p);
         let run = |case: &LayerCase| {

@@ -105,8 +105,7 @@ fn gradients_of_a_chain(
 ) -> [Tensor; 2] {
     let count = pedestrians.len() as i64;
     let leaf = |numbers: &[f64], shape: &[i64]| {
-        let tensor = Tensor::from_slice(numbers).reshape(shape);
-        tensor.to_kind(kind).set_requires_grad(true)
+        Tensor::from_slice(numbers).reshape(shape).to_kind(kind).set_requires_grad(true)
     };
     let (goals, starts): (Vec<[f64; 2]>, Vec<[f64; 2]>) = pedestrians.iter().copied().unzip();
     let starts = leaf(starts.as_flattened(), &[count, 2]);
@@ -124,8 +123,7 @@ fn gradients_of_a_chain(
         path.push(positions.shallow_clone());
     }
     // The offset gives the loss a gradient at the goals.
-    let loss = (Tensor::stack(&path, 0) - &goals - 0.5).square().sum(kind);
-    loss.backward();
+    (Tensor::stack(&path, 0) - &goals - 0.5).square().sum(kind).backward();
     [starts.grad(), factors.grad()]
 }
 

@@ -13,8 +13,7 @@ use tch::Kind;
 
 /// Windows with very different numbers of pedestrians, including one with a single pedestrian; or only the latter.
 fn scenes() -> [Vec<Window>; 3] {
-    let dataset = Dataset::simulated(1);
-    let windows = dataset.recordings()[0].windows(WindowRule::Complete);
+    let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
     let alone = Window::new("alone", 0, 10, windows[0].pedestrians()[..1].to_vec(), vec![windows[0].track(0).to_vec()])
         .unwrap();
     let some: Vec<Window> = windows.into_iter().step_by(9).take(4).collect();
@@ -161,8 +160,7 @@ fn apart(ours: &[WindowRollout], reference: &[WindowRollout]) -> f64 {
     assert_eq!(ours.len(), reference.len());
     let numbers = |rollout: &WindowRollout| -> Vec<f64> {
         let factors = rollout.factors.iter().flatten().flatten();
-        let positions = rollout.positions.as_flattened().iter();
-        positions.chain(factors).copied().collect()
+        rollout.positions.as_flattened().iter().chain(factors).copied().collect()
     };
     let pairs = ours.iter().zip(reference).flat_map(|(ours, reference)| {
         let (ours, reference) = (numbers(ours), numbers(reference));
