@@ -56,18 +56,6 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
     out.write_all(text.as_bytes()).and_then(|()| out.flush()).context("cannot write to standard output")
 }
 
-/// A coordinate in tables, rounded to 0.1 mm; or a time, rounded to 0.1 ms.
-pub(crate) fn table_metres(metres: f64) -> f64 {
-    // no `-0`
-    (1e4 * metres).round() / 1e4 + 0.0
-}
-
-/// A share in tables, rounded to 3 significant digits.
-pub(crate) fn table_share(share: f64) -> f64 {
-    // cannot fail: a formatted number parses
-    format!("{share:.2e}").parse().unwrap_or(share)
-}
-
 pub(crate) fn shell_word(path: &Path) -> String {
     let path = path.display().to_string();
     // Quoting fails only for a zero byte, which no path contains.

@@ -82,6 +82,8 @@ pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal
 pub use run::track_units::TrackUnits;
 #[cfg(feature = "files")]
 pub use run::validation_part::ValidationPart;
+#[cfg(feature = "files")]
+pub use tracks::csv_table::{csv_table, table_metres, table_share};
 pub use tracks::json_lines::json_lines;
 pub use tracks::moment::Moment;
 pub use tracks::observed::{NobodyObserved, ObservedTracks, in_frames, misfits_of, noise, steps_in_words};

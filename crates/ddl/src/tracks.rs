@@ -1,5 +1,7 @@
 //! Tracks of a file and answers about them: what every program that reads files says and writes.
 
+#[cfg(feature = "files")]
+pub(crate) mod csv_table;
 pub(crate) mod json_lines;
 pub(crate) mod moment;
 pub(crate) mod observed;

@@ -3,12 +3,12 @@
 use crate::command::forecast::{
     AnsweringCommand, NamedPlan, OutputFormat, StreamOptions, StreamState, answer, read_plans, tell_doubts_of_ego,
 };
-use crate::output::{table_metres, table_share};
+
 use anyhow::Context as _;
 use clap::Args;
-use ddl::Moment;
 use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
 use ddl::scene::{Clearance, Plan};
+use ddl::{Moment, table_metres, table_share};
 use serde::Serialize;
 use std::path::PathBuf;
 

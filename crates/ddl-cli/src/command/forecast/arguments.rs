@@ -4,12 +4,11 @@ use crate::command::forecast::answer::answer;
 use crate::command::forecast::plans::{GivenPlanOptions, tell_doubts_of_ego};
 use crate::command::forecast::state::StreamState;
 use crate::command::forecast::stream::{AnsweringCommand, OutputFormat, StreamOptions};
-use crate::command::forecast::table;
 use anyhow::bail;
 use clap::Args;
 use ddl::data::Window;
 use ddl::scene::Plan;
-use ddl::{Moment, Request, json_lines};
+use ddl::{Moment, Request, csv_table, json_lines};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 
@@ -111,7 +110,7 @@ impl AnsweringCommand for ForecastCommand {
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         let headed = state.is_first_text();
         match self.stream.format(self.format) {
-            OutputFormat::Csv => table::csv(moments, headed, &self.region),
+            OutputFormat::Csv => Ok(csv_table(moments, headed, &self.region)?),
             OutputFormat::Jsonl => Ok(json_lines(moments, &self.region)?),
         }
     }

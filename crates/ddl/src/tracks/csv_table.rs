@@ -1,9 +1,8 @@
 //! Forecasts as csv: one row for each position.
 
-use crate::output::{table_metres, table_share};
-use anyhow::Context as _;
-use ddl::Moment;
-use ddl::data::{FrameNumber, PedestrianName};
+use crate::tracks::moment::Moment;
+use ddl_core::PedestrianName;
+use ddl_data::FrameNumber;
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -47,8 +46,12 @@ const SCENE: &str = "scene";
 /// Further columns for the certificate of a position.
 const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
-/// The table of these moments, with a column of radii for each requested region.
-pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
+/// The table of these moments, with the names of the columns if it is `headed`, and a column of radii for each requested
+/// region.
+///
+/// # Errors
+/// None that is known: every field has a form in csv.
+pub fn csv_table(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> Result<String, csv::Error> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     if headed {
         let certified = moments.iter().any(|moment| !moment.answer.certificates().is_empty());
@@ -103,6 +106,19 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
             }
         }
     }
-    let bytes = writer.into_inner().context("cannot finish the csv")?;
-    Ok(String::from_utf8(bytes)?)
+    let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+    // Fields are text.
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}
+
+/// A coordinate in tables, rounded to 0.1 mm; or a time, rounded to 0.1 ms.
+pub fn table_metres(metres: f64) -> f64 {
+    // no `-0`
+    (1e4 * metres).round() / 1e4 + 0.0
+}
+
+/// A share in tables, rounded to 3 significant digits.
+pub fn table_share(share: f64) -> f64 {
+    // cannot fail: a formatted number parses
+    format!("{share:.2e}").parse().unwrap_or(share)
 }
