@@ -46,8 +46,8 @@ const SCENE: &str = "scene";
 /// Further columns for the certificate of a position.
 const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
-/// The table of these moments, with the names of the columns if it is `headed`, and a column of radii for each requested
-/// region.
+/// The table of these moments, with the names of the columns if it is `headed`, and a column of radii for each
+/// requested region.
 ///
 /// # Errors
 /// None that is known: every field has a form in csv.
