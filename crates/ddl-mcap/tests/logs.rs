@@ -1,7 +1,7 @@
 //! What is read of logs, and what is written (`reference/logs.py`).
 
 use ddl_core::{Forecast, PedestrianId, Window};
-use ddl_mcap::{ForecastLog, LoggedTracks, TrackTopic, is_log, is_mcap, read_log};
+use ddl_mcap::{ForecastLog, LogError, LoggedTracks, TrackTopic, is_log, is_mcap, read_log};
 use ddl_ros::msg::{Forecasts, Header, MarkerArray, Path, People, Time};
 use ddl_ros::{ForecastMessages, Message as _};
 use mcap::records::MessageHeader;
@@ -48,11 +48,11 @@ fn log(entries: &[LoggedMessage], options: WriteOptions) -> McapResult<Vec<u8>> 
 }
 
 /// Reads a file of these bytes; all but cars are pedestrians.
-fn read(file: &[u8], topic: Option<&str>) -> Result<LoggedTracks, String> {
+fn read(file: &[u8], topic: Option<&str>) -> Result<LoggedTracks, LogError> {
     let folder = TempDir::new().expect("a file");
     let path = folder.path().join("a.mcap");
     fs::write(&path, file).expect("a file");
-    read_log(&path, topic, |class| class != "car").map_err(|error| error.to_string())
+    read_log(&path, topic, |class| class != "car")
 }
 
 /// Microsecond, name and place of each row, in the order of times and names.
@@ -82,7 +82,7 @@ fn messages_give_their_rows_notes_and_errors() {
                 });
                 assert_eq!(found, case["found"]);
             }
-            Err(error) => assert!(error.contains(case["error"].as_str().unwrap()), "{error}"),
+            Err(error) => assert!(error.to_string().contains(case["error"].as_str().unwrap()), "{error}"),
         }
     }
 }
@@ -117,7 +117,7 @@ fn of_a_file_that_is_cut_off_all_that_is_whole_is_read() {
     let mut damaged = log(&entries, in_chunks).unwrap();
     let place = damaged.windows(5).position(|text| text == b"track").unwrap();
     damaged[place + 1] ^= 1;
-    assert!(read(&damaged, None).unwrap_err().contains("a chunk is damaged"));
+    assert!(read(&damaged, None).unwrap_err().to_string().contains("a chunk is damaged"));
 }
 
 #[test]

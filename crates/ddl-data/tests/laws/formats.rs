@@ -1,7 +1,7 @@
 //! Files as people have them: their columns in any order, under any of the usual names, and formats of others.
 
 use ddl_core::PedestrianId;
-use ddl_data::{ColumnChoice, Format, FrameReader, Observation, Recording, parse_columns};
+use ddl_data::{ColumnChoice, DataError, Format, FrameReader, Observation, Recording, parse_columns};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -15,10 +15,10 @@ pub(crate) fn chosen(text: &str) -> (&str, ColumnChoice) {
 }
 
 /// Reads a file like the program: its format is recognised.
-fn read(name: &str, text: &str) -> Result<Recording, String> {
+fn read(name: &str, text: &str) -> Result<Recording, DataError> {
     let (name, choice) = chosen(name);
-    let format = Format::guess(Path::new(name), text.as_bytes(), &choice).map_err(|error| error.to_string())?;
-    parse_columns(text.as_bytes(), name, format, &choice).map_err(|error| error.to_string())
+    let format = Format::guess(Path::new(name), text.as_bytes(), &choice)?;
+    parse_columns(text.as_bytes(), name, format, &choice)
 }
 
 /// Names of frame, pedestrian, x and y, and units per metre.
@@ -105,7 +105,7 @@ proptest! {
                 let found = recording.observations().iter().map(|seen| (seen.frame, seen.pedestrian.0));
                 prop_assert!(found.eq(rows.iter().map(|&(frame, id, ..)| (frame, id))), "{people:?}");
             }
-            Err(problem) => prop_assert!(problem.contains("write the line frame,pedestrian,x,y"), "{problem}"),
+            Err(error) => prop_assert!(error.to_string().contains("write the line frame,pedestrian,x,y"), "{error}"),
         }
     }
 }
@@ -197,7 +197,7 @@ fn every_format_is_recognised() {
 fn messages_are_short() {
     let (begin, lines) = (std::time::Instant::now(), ("a,".repeat(50_000) + "\n").repeat(60));
     for text in [&(",".repeat(200_000) + "\n"), &lines] {
-        let message = read("wide.csv", text).unwrap_err();
+        let message = read("wide.csv", text).unwrap_err().to_string();
         assert!(message.len() < 400, "{message}");
     }
     assert!(begin.elapsed().as_secs() < 20, "{:?}", begin.elapsed());

@@ -389,10 +389,10 @@ mod tests {
         scene: &str,
         frame: i64,
         seen: &[(PedestrianId, Position)],
-    ) -> Result<Vec<Note>, String> {
+    ) -> Result<Vec<Note>, DdlError> {
         let scene = (!scene.is_empty()).then(|| name(scene));
         let names = PedestrianNames::default();
-        session.observe(scene.as_ref(), frame, seen.iter().copied(), &names).map_err(|error| error.to_string())
+        session.observe(scene.as_ref(), frame, seen.iter().copied(), &names)
     }
 
     #[test]
@@ -402,7 +402,7 @@ mod tests {
         for scene in 0..Session::<&Ddl>::MOST_SCENES {
             observed(&mut many, &scene.to_string(), 0, &[]).unwrap();
         }
-        let error = observed(&mut many, "more", 0, &[]).unwrap_err();
+        let error = observed(&mut many, "more", 0, &[]).unwrap_err().to_string();
         assert!(error.contains("more than 2000") && error.contains("10 minutes"), "{error}");
         // Scenes without a frame are forgotten at once.
         many.idle_timeout = Duration::ZERO;
@@ -414,7 +414,7 @@ mod tests {
         for frame in 0..waiting + 7 {
             observed(&mut many, "", frame, &seen).unwrap();
         }
-        let error = observed(&mut many, "", waiting + 7, &seen).unwrap_err();
+        let error = observed(&mut many, "", waiting + 7, &seen).unwrap_err().to_string();
         assert!(error.contains("10000 frames wait"), "{error}");
         many.next_batch(1);
         observed(&mut many, "", waiting + 7, &seen).unwrap();
@@ -423,7 +423,7 @@ mod tests {
         for scene in ["0", "1", "2", "3"] {
             observed(&mut many, scene, 0, &crowd).unwrap();
         }
-        let error = observed(&mut many, "4", 0, &crowd).unwrap_err();
+        let error = observed(&mut many, "4", 0, &crowd).unwrap_err().to_string();
         assert!(error.contains("more than 400000 pedestrians"), "{error}");
     }
 }
