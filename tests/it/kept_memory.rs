@@ -19,8 +19,7 @@ fn rows(steps: Range<i64>) -> Vec<Row> {
 }
 
 fn moved(rows: Vec<Row>) -> Vec<Row> {
-    let by = |(frame, id, x, y): Row| (frame, id, x + 500.0, y - 300.0);
-    rows.into_iter().map(by).collect()
+    rows.into_iter().map(|(frame, id, x, y): Row| (frame, id, x + 500.0, y - 300.0)).collect()
 }
 
 /// Writes a memory of these pedestrians to a file.

@@ -42,8 +42,7 @@ pub fn check(forecasts: impl Fn(BuiltinModel) -> Vec<Golden>) {
 pub fn window() -> Window {
     let mut tracks: BTreeMap<i64, Vec<Position>> = BTreeMap::new();
     for row in include_str!("../golden/tracks.csv").lines().skip(1) {
-        let number = |field: &str| field.parse::<f64>().expect("a number");
-        let fields: Vec<f64> = row.split(',').map(number).collect();
+        let fields: Vec<f64> = row.split(',').map(|field: &str| field.parse::<f64>().expect("a number")).collect();
         tracks.entry(fields[1] as i64).or_default().push([fields[2], fields[3]]);
     }
     let pedestrians = tracks.keys().map(|&id| PedestrianId(id)).collect();

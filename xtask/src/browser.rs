@@ -25,8 +25,7 @@ pub(crate) fn check(workspace: &Workspace, script: &str, folder: &Path, screensh
 /// `$DDL_BROWSER`, a Chromium on the search path, or a newly installed one.
 pub(crate) fn find_or_install() -> Result<PathBuf> {
     if let Some(named) = env::var_os("DDL_BROWSER").filter(|value| !value.is_empty()) {
-        let missing = || format!("DDL_BROWSER={} is not a program", named.display());
-        return find_on_path(&named).with_context(missing);
+        return find_on_path(&named).with_context(|| format!("DDL_BROWSER={} is not a program", named.display()));
     }
     let find = || NAMES.split(' ').find_map(|name| find_on_path(OsStr::new(name)));
     if let Some(browser) = find() {

@@ -123,8 +123,7 @@ impl ShownAnswer {
         self.numbers.add(pairs(forecast).map(|(i, k)| forecast.weight(i, k)));
         self.numbers.add(pairs(forecast).filter_map(|(i, k)| forecast.goal(i, k)).flatten());
         self.numbers.add((0..window.len()).filter_map(|i| forecast.familiarity(i)));
-        let spread = |i| (0..HORIZON).filter_map(move |t| forecast.scale(i, t));
-        self.numbers.add((0..window.len()).flat_map(spread));
+        self.numbers.add((0..window.len()).flat_map(|i| (0..HORIZON).filter_map(move |t| forecast.scale(i, t))));
         self.certified.extend(pairs(forecast).filter_map(|(i, k)| forecast.certified(i, k)));
     }
 

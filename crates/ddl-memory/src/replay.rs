@@ -50,8 +50,7 @@ impl SceneMemory {
     ) -> Result<Vec<Window>, MemoryError> {
         self.ensure_step_of(recording)?;
         self.end_tracks();
-        let ends = |window: &Window| window.frames()[window.steps() - 1];
-        let last = windows.iter().map(ends).max();
+        let last = windows.iter().map(|window: &Window| window.frames()[window.steps() - 1]).max();
         let mut frames: Vec<i64> = recording.frames().iter().copied().filter(|frame| Some(*frame) <= last).collect();
         frames.sort_unstable_by_key(|frame| playback.time(*frame));
         let mut frames = frames.into_iter().peekable();

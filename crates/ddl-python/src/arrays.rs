@@ -46,8 +46,7 @@ pub(crate) fn tracks(
     let positions = flat(name, array)?.as_chunks::<2>().0;
     for (index, position) in positions.iter().enumerate() {
         let unseen = nan && position.iter().all(|coordinate| coordinate.is_nan());
-        let fine = |coordinate: &f64| coordinate.abs() <= COORDINATE_LIMIT;
-        if !unseen && !position.iter().all(fine) {
+        if !unseen && !position.iter().all(|coordinate: &f64| coordinate.abs() <= COORDINATE_LIMIT) {
             let [i, t] = [index / steps, index % steps];
             let rule = if nan { "NaN in both if the pedestrian was not observed" } else { "no NaN" };
             return Err(PyValueError::new_err(format!(

@@ -93,8 +93,7 @@ fn spread_and_regions(
 fn observed_rows(py: Python<'_>, observed: &ObservedScene, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
-    let of_row = |row: &Option<usize>| window.zip(*row).map(|(window, i)| window.quality(i));
-    let qualities = || rows.iter().map(of_row);
+    let qualities = || rows.iter().map(|row: &Option<usize>| window.zip(*row).map(|(window, i)| window.quality(i)));
     let unseen = qualities().map(|quality| quality.map_or(0, |quality| quality.unseen as i64));
     let age = qualities().map(|quality| quality.map_or(f64::NAN, |quality| quality.age));
     let deviation = qualities().map(|quality| quality.map_or(f64::NAN, |quality| quality.deviation));

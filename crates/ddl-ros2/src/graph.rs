@@ -63,8 +63,7 @@ impl<T: Message + 'static> Inputs<T> {
 
 /// The next message that has arrived.
 pub(crate) fn take<M: Message + 'static>(from: &Subscription<M>) -> Option<anyhow::Result<(M, MessageInfo)>> {
-    let malformed = |error| anyhow!("a message {} is malformed: {error}", M::TYPE);
-    from.take().map_err(malformed).transpose()
+    from.take().map_err(|error| anyhow!("a message {} is malformed: {error}", M::TYPE)).transpose()
 }
 
 pub(crate) struct Outputs {

@@ -111,8 +111,7 @@ impl Occupancy {
         check("the time between grids", step, step >= 0.01, "a number of at least 0.01 s")?;
         let last = (LAST / step + ROUNDING) as usize;
         // Without the rounding error of the product: 0.3, not 0.30000000000000004.
-        let time = |index| (index as f64 * step * 1e9).round() / 1e9;
-        Ok((0..=last).map(time).collect())
+        Ok((0..=last).map(|index| (index as f64 * step * 1e9).round() / 1e9).collect())
     }
 }
 

@@ -103,8 +103,7 @@ impl Futures {
             });
         }
         let crowd = CrowdAtRisk::new(self)?;
-        let risk = |plan| self.risk(&crowd, &crowd.sweep(plan, within), &odds(plan), ego);
-        Ok(plans.par_iter().map(risk).collect())
+        Ok(plans.par_iter().map(|plan| self.risk(&crowd, &crowd.sweep(plan, within), &odds(plan), ego)).collect())
     }
 
     /// For each plan, the expected least distance of pedestrians from its edge if they do not see it, computed with the

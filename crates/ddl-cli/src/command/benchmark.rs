@@ -193,8 +193,7 @@ impl Benchmark {
     }
 
     fn cores(&self) -> usize {
-        let all_cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        self.threads.unwrap_or_else(all_cores)
+        self.threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get))
     }
 }
 

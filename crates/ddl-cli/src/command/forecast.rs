@@ -9,7 +9,6 @@ mod live;
 mod plans;
 mod state;
 mod stream;
-mod told_once;
 
 pub(crate) use answer::answer;
 pub(crate) use arguments::ForecastCommand;

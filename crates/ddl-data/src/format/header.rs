@@ -183,8 +183,7 @@ fn refuse_numbers(names: &[&str]) -> Result<(), Fault> {
 impl<'a> NamedColumns<'a> {
     fn of(names: &'a [&'a str], plain: &'a [String], choice: &ColumnChoice) -> Self {
         let mut columns = Self { names, plain, found: Vec::new(), unknown: Vec::new() };
-        let is_time = |name: &&str| named(0, name).is_some_and(|named| named.role == Role::Time);
-        let has_time = names.iter().any(is_time);
+        let has_time = names.iter().any(|name: &&str| named(0, name).is_some_and(|named| named.role == Role::Time));
         // x and y that are given stand for a box as well, and a box for x and y.
         let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
         for (index, name) in names.iter().enumerate() {

@@ -36,8 +36,7 @@ fn is_blocked(wall: &Segment, a: Position, b: Position) -> bool {
 /// Successive positions of every pedestrian (m), 0.4 s apart.
 fn tracks(crowd: &SimulatedScene) -> Vec<Vec<Position>> {
     let recording = &crowd.recording;
-    let positions = |id| recording.track(id).iter().map(|o| o.position).collect();
-    recording.pedestrians().into_iter().map(positions).collect()
+    recording.pedestrians().into_iter().map(|id| recording.track(id).iter().map(|o| o.position).collect()).collect()
 }
 
 /// Speed of every pedestrian between successive positions (m/s).

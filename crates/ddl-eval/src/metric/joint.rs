@@ -125,8 +125,7 @@ fn colliding<'a>(n: usize, futures: usize, path: impl Fn(usize, usize) -> &'a [P
             }
         }
     }
-    let count = |of_future: &[bool]| of_future.iter().filter(|&&hit| hit).count();
-    hit.map(|hit| hit.chunks(n).map(count).collect())
+    hit.map(|hit| hit.chunks(n).map(|of_future: &[bool]| of_future.iter().filter(|&&hit| hit).count()).collect())
 }
 
 /// Whether no two points within two rectangles, each from its low to its high corner, are too near.

@@ -53,8 +53,7 @@ pub(super) fn interval(folds: &[Vec<PartialSum>]) -> Option<Interval> {
     if folds.iter().any(|fold| fold.len() < MIN_BLOCKS) {
         return None;
     }
-    let whole = |fold: &Vec<PartialSum>| mean(fold.iter().copied());
-    let means: Option<Vec<f64>> = folds.iter().map(whole).collect();
+    let means: Option<Vec<f64>> = folds.iter().map(|fold: &Vec<PartialSum>| mean(fold.iter().copied())).collect();
     let mean_of = |means: &[f64]| means.iter().sum::<f64>() / means.len() as f64;
     let means = means.filter(|means| !means.is_empty())?;
     let mut random = generator();

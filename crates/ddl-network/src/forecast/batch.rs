@@ -185,10 +185,7 @@ fn order(window: &Window, by: CrowdOrder) -> Vec<usize> {
         match by {
             CrowdOrder::Strips => {
                 let strip = |i: usize| (last(i)[0] / STRIP).floor();
-                order.sort_by(|&i, &j| {
-                    let along = || last(i)[1].total_cmp(&last(j)[1]);
-                    strip(i).total_cmp(&strip(j)).then_with(along)
-                });
+                order.sort_by(|&i, &j| strip(i).total_cmp(&strip(j)).then_with(|| last(i)[1].total_cmp(&last(j)[1])));
             }
             CrowdOrder::Curve => {
                 // Whoever is further than 16 km from the first pedestrian counts as at the edge.

@@ -283,8 +283,7 @@ mod tests {
             let goal = |(position, way, ..): &Row| [position[0] + way[0], position[1] + way[1]];
             let goals: Vec<_> = rows.iter().map(goal).collect();
             let steps = rows.iter().zip(&goals).zip(bounds(&rows));
-            let finite = |goal: &[f32; 2]| goal.iter().all(|x| x.is_finite());
-            prop_assume!(goals.iter().all(finite));
+            prop_assume!(goals.iter().all(|goal: &[f32; 2]| goal.iter().all(|x| x.is_finite())));
             let expected: Vec<_> = steps
                 .map(|((row, &goal), bounds)| next(row.0, goal, row.2, (1e-8, time), Some(&bounds)).map(f32::to_bits))
                 .collect();

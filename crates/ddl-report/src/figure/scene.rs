@@ -58,8 +58,7 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, ReportError
 
 /// The discs of all pedestrians; empty for forecasts without regions.
 fn regions(forecast: &Forecast) -> impl Iterator<Item = Disc> {
-    let of_one = |i| forecast.region(i, HORIZON - 1, LEVEL).unwrap_or_default();
-    (0..forecast.pedestrians()).flat_map(of_one)
+    (0..forecast.pedestrians()).flat_map(|i| forecast.region(i, HORIZON - 1, LEVEL).unwrap_or_default())
 }
 
 fn entries(window: &Window, forecast: &Forecast) -> Vec<(LegendSample, &'static str)> {

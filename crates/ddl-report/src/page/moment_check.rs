@@ -27,8 +27,7 @@ fn check_moment(moment: &ForecastSnapshot, truth: usize) -> Result<(), MomentFau
     }
     if moment.joint {
         let futures = moment.pedestrians[0].hypotheses.len();
-        let differs = |pedestrian: &SnapshotPedestrian| pedestrian.hypotheses.len() != futures;
-        if moment.pedestrians.iter().any(differs) {
+        if moment.pedestrians.iter().any(|pedestrian: &SnapshotPedestrian| pedestrian.hypotheses.len() != futures) {
             return Err(MomentFault::JointFutures);
         }
     }
@@ -64,8 +63,7 @@ fn check_path(pedestrian: usize, field: &'static str, path: &[Position], expecte
 
 /// Millimetres of coordinates within the limit stay far below the largest whole number of an `f64`.
 fn check_coordinates(pedestrian: usize, field: &'static str, path: &[Position]) -> Result<(), MomentFault> {
-    let is_far = |value: &&f64| value.is_nan() || value.abs() > COORDINATE_LIMIT;
-    match path.as_flattened().iter().find(is_far) {
+    match path.as_flattened().iter().find(|value: &&f64| value.is_nan() || value.abs() > COORDINATE_LIMIT) {
         None => Ok(()),
         Some(&value) => Err(MomentFault::Coordinate { pedestrian, field, value }),
     }

@@ -48,8 +48,7 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
 }
 
 fn has_ablated_variant(group: &ResultGroup<'_>) -> bool {
-    let ablated = |line: &TableLine<'_>| variant(line).is_some_and(|row| row.variant != "full");
-    group.lines.iter().any(ablated)
+    group.lines.iter().any(|line: &TableLine<'_>| variant(line).is_some_and(|row| row.variant != "full"))
 }
 
 fn alike(group: &ResultGroup<'_>) -> bool {

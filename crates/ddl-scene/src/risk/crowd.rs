@@ -108,8 +108,7 @@ impl CrowdAtRisk {
 
     /// The pedestrians that come close in some future, and perhaps others.
     pub(super) fn near(&self, sweep: &Sweep) -> Vec<usize> {
-        let near = |i: &usize| near(&self.outer_rings[*i], &sweep.rings).is_some();
-        (0..self.n).filter(near).collect()
+        (0..self.n).filter(|i: &usize| near(&self.outer_rings[*i], &sweep.rings).is_some()).collect()
     }
 
     /// The deviations of pedestrian `i` that come close in future `k`; `None` if none do.

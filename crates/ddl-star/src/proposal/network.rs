@@ -251,8 +251,7 @@ impl TorchProposals {
             its_late,
         ];
         let axis = |axis: i64| pairs.iter().map(move |pair| pair.select(-1, axis));
-        let likeness = |scale: &f64| (&views.remembered.distances / -*scale).exp();
-        let likenesses = SIMILARITY_SCALES.iter().map(likeness);
+        let likenesses = SIMILARITY_SCALES.iter().map(|scale: &f64| (&views.remembered.distances / -*scale).exp());
         let features: Vec<Tensor> = axis(0).chain(axis(1)).chain(likenesses).collect();
         Tensor::stack(&features, -1)
     }

@@ -251,8 +251,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
 
     fn scenes(&self, forecasts: &[Forecast]) -> Vec<(Window, Forecast)> {
         let widest = self.test.rules.last().map_or(&[][..], |(_, indices)| indices);
-        let scene = |&at: &usize| (self.test.windows[at].clone(), forecasts[at].clone());
-        widest.iter().map(scene).collect()
+        widest.iter().map(|&at: &usize| (self.test.windows[at].clone(), forecasts[at].clone())).collect()
     }
 
     /// Windows for display, from the model's forecasts for each window of the test set.

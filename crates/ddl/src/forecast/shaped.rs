@@ -74,8 +74,7 @@ pub(crate) fn without_goals(
 ) -> Result<Vec<Forecast>, ForecastError> {
     let noise = Noise::Draws { count: NOISE_HYPOTHESES, seed };
     // This variant does not read the goals.
-    let unused = |window: &Window| vec![vec![[0.0; 2]]; window.len()];
-    let goals: Vec<_> = windows.iter().map(unused).collect();
+    let goals: Vec<_> = windows.iter().map(|window: &Window| vec![vec![[0.0; 2]]; window.len()]).collect();
     network
         .forecast_windows(windows, &goals, noise, StepRule::Bounded, None)
         .map_err(|error| ForecastError::model(NAME, error))?

@@ -89,8 +89,7 @@ impl Region {
     fn of(forecast: &Forecast, i: usize, probability: f64) -> Option<Self> {
         let discs = |t: usize| {
             let region = forecast.region(i, t, probability)?;
-            let disc = |disc: &Disc| [disc.centre[0], disc.centre[1], disc.radius];
-            Some(region.iter().map(disc).collect())
+            Some(region.iter().map(|disc: &Disc| [disc.centre[0], disc.centre[1], disc.radius]).collect())
         };
         let discs = (0..HORIZON).map(discs).collect::<Option<_>>()?;
         Some(Self { probability, discs })

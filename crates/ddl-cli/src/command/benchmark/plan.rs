@@ -117,8 +117,7 @@ impl BenchmarkPlan {
 
     /// The earlier task of the same fold and seed, whose goals this task uses.
     pub(super) fn with_same_goals(&self, task: &Task) -> Option<&Task> {
-        let same = |other: &&Task| (&other.fold, other.seed) == (&task.fold, task.seed);
-        let first = self.tasks.iter().find(same)?;
+        let first = self.tasks.iter().find(|other: &&Task| (&other.fold, other.seed) == (&task.fold, task.seed))?;
         (first != task).then_some(first)
     }
 

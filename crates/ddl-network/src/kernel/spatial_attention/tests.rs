@@ -164,8 +164,7 @@ fn bears_big_scores() {
     same.visible.fill(true);
     let (mixed, _) = same.run(Dispatch::detect().instruction_set());
     for number in 0..32 {
-        let value = |pedestrian: usize| same.inputs[2][pedestrian * 32 + number];
-        let mean = (0..6).map(value).sum::<f32>() / 6.0;
+        let mean = (0..6).map(|pedestrian: usize| same.inputs[2][pedestrian * 32 + number]).sum::<f32>() / 6.0;
         for row in mixed.chunks_exact(32) {
             assert!((row[number] - mean).abs() < 1e-6, "{}: {mean}", row[number]);
         }
