@@ -267,8 +267,7 @@ fn a_scene_that_falls_silent_blocks_no_other() {
         live.write(&(as_csv("hall", &(10 * frame, 1, 0.5 * frame as f64, 0.0)) + "\n"));
         if frame > 0 {
             let line = live.line();
-            let is_expected = line["scene"] == "hall" && line["observed_until"] == 10 * frame;
-            assert!(is_expected, "{line}");
+            assert!(line["scene"] == "hall" && line["observed_until"] == 10 * frame, "{line}");
         }
     }
     let rest = json_lines::<Value>(&live.end().succeeds());

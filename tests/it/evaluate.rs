@@ -200,6 +200,5 @@ fn goals_are_measured() {
     assert!(calibration.log_loss.is_finite() && calibration.bins.len() == 10);
     let words = place.ok(measure);
     let nearest_goal = format!("{:.3}", test.all.oracle_fde);
-    let is_told = words.contains("nearest goal off") && words.contains(&nearest_goal);
-    assert!(is_told, "{words}");
+    assert!(words.contains("nearest goal off") && words.contains(&nearest_goal), "{words}");
 }

@@ -85,3 +85,14 @@ fn only_system_libraries_are_loaded() {
         assert!(loaded.is_empty(), "{line}: {loaded:?}");
     }
 }
+
+#[test]
+fn an_empty_path_is_refused_before_any_work() {
+    let place = Place::empty();
+    let lines =
+        ["forecast - --memory=", "forecast - --output=", "occupancy a --folder=", "train --out=", "data --svg="];
+    for line in lines.into_iter().chain(["evaluate --model=", "pack --benchmark=", "forecast --homography="]) {
+        let refused = place.run(line);
+        assert!(refused.code == Some(2) && refused.stderr.contains("a value is required"), "{line}: {refused:?}");
+    }
+}

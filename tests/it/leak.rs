@@ -79,8 +79,7 @@ fn baselines_never_see_the_future() {
     {
         never_sees_the_future(&forecaster);
     }
-    let goals = EstimatedGoals::with(GoalEstimatorParams::default());
-    never_sees_the_future(&StraightLine(goals));
+    never_sees_the_future(&StraightLine(EstimatedGoals::with(GoalEstimatorParams::default())));
 }
 
 #[test]
@@ -104,8 +103,7 @@ fn forecasters_that_read_the_future_are_detected() {
     // Only its forecasts reveal that it uses the published goals if there is a future.
     let of_window = |window: &Window| if window.has_future() { &published } else { &fair }.forecast(window);
     let forecaster = Made(|windows: &[Window]| windows.iter().map(of_window).collect());
-    let window = &crowd::windows(1, 4)[0];
-    assert!(leak::find(&forecaster, window).unwrap().is_some());
+    assert!(leak::find(&forecaster, &crowd::windows(1, 4)[0]).unwrap().is_some());
 }
 
 #[test]

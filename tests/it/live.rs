@@ -129,8 +129,7 @@ fn an_invalid_line_is_reported_and_earlier_frames_are_answered() {
         let finished = place.run_on(&format!("{good}{bad}"), line).says(message);
         // Frame 80, which the invalid line ends, is also forecast.
         assert_eq!((finished.stdout.lines().count(), finished.code), (6, Some(1)));
-        let named = finished.stderr.starts_with("error: standard input, ");
-        assert!(named, "{finished:?}");
+        assert!(finished.stderr.starts_with("error: standard input, "), "{finished:?}");
     }
 }
 

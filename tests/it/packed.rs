@@ -75,8 +75,7 @@ fn every_command_accepts_a_packed_model() {
         assert_eq!(info[fact], of_run[fact], "{fact}");
     }
     let _ = place.ok("pack --model packed --out again");
-    let same = place.read("packed") == place.read("again");
-    assert!(same, "packing a packed model changes it");
+    assert!(place.read("packed") == place.read("again"), "packing a packed model changes it");
 }
 
 fn reported() -> BTreeMap<String, Value> {

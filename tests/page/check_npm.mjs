@@ -123,7 +123,7 @@ test("a memory grows, times are seconds, and a faulty frame changes nothing", ()
   const many = ["frame,pedestrian,x,y", ...Array.from({ length: 42_000 }, row)].join("\n");
   assert.throws(() => forecast("a.csv", Buffer.from(many), { fps: 2.5 }), /41000 forecasts exceed the 40000/);
   assert.throws(() => forecast({}, bytes), /the name of the file is no string/);
-  for (const moment of [NaN, 5e9]) {
+  for (const moment of [NaN, 1e10]) {
     assert.throws(() => place.observe(moment, Float64Array.of(7), Float64Array.of(0, 0)), /a number of seconds/);
   }
   assert.throws(() => place.observe(30, Float64Array.of(7), Float64Array.of(1e8, 0)), /is no position/);

@@ -10,6 +10,7 @@ import argparse
 import json
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import time
@@ -66,6 +67,11 @@ def program(*arguments, folder, fails=False):
     return done
 
 
+def in_words_of_browsers(text):
+    """Settings as the browser writes them: frameStep for --frame-step."""
+    return re.sub(r"--([a-z-]+)", lambda found: re.sub(r"-(.)", lambda at: at[1].upper(), found[1]), text)
+
+
 def by_moment(text):
     lines = [json.loads(line) for line in text.splitlines()]
     return {(line["observed_until"], line.get("pedestrian")): line for line in lines}
@@ -110,7 +116,7 @@ def check_file(opened, file, joint):
     shown = opened.page.locator("#notes li").all_inner_texts()
     shown, told = (
         [line for line in lines if not any(words in line for words in OF_OUTPUT)]
-        for lines in (shown, done.stderr.splitlines())
+        for lines in (shown, in_words_of_browsers(done.stderr).splitlines())
     )
     assert shown == told
     data = json.loads(opened.player().evaluate("document.getElementById('moments-json').textContent"))
@@ -142,7 +148,7 @@ def check_errors(opened, folder):
         opened.page.set_input_files("#file", folder / name)
         wait_for(opened.page, "!document.getElementById('error').hidden")
         assert not opened.page.locator("#player").is_visible()
-        expected = program("forecast", name, folder=folder, fails=True).stderr.strip()
+        expected = in_words_of_browsers(program("forecast", name, folder=folder, fails=True).stderr.strip())
         assert opened.text("#error") == expected, (opened.text("#error"), expected)
     (folder / "log.mcap").write_bytes(b"\x89MCAP0\r\n")
     opened.page.set_input_files("#file", folder / "log.mcap")

@@ -22,8 +22,7 @@ pub fn windows(count: usize, most: usize) -> Vec<Window> {
     fitting.retain(|window| (2..=most).contains(&window.len()));
     let available = fitting.len();
     assert!(available >= count, "{count} windows requested, {available} available");
-    let stride = available / count;
-    fitting.into_iter().step_by(stride).take(count).collect()
+    fitting.into_iter().step_by(available / count).take(count).collect()
 }
 
 /// The windows of the training scenes.

@@ -46,8 +46,7 @@ pub fn window() -> Window {
         tracks.entry(fields[1] as i64).or_default().push([fields[2], fields[3]]);
     }
     let pedestrians = tracks.keys().map(|&id| PedestrianId(id)).collect();
-    let tracks = tracks.into_values().collect();
-    Window::new("golden", 0, 10, pedestrians, tracks).expect("a window")
+    Window::new("golden", 0, 10, pedestrians, tracks.into_values().collect()).expect("a window")
 }
 
 impl Golden {

@@ -49,8 +49,7 @@ pub fn csv(rows: &[Row]) -> String {
 
 /// A part of a simulated crowd, as a recording of a user.
 pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
-    let recording = crowd::dataset().recording(scene).expect("the simulated scene exists");
-    of_recording(recording, frames)
+    of_recording(crowd::dataset().recording(scene).expect("the simulated scene exists"), frames)
 }
 
 /// The rows of these frames.

@@ -4,7 +4,7 @@ use crate::boundary::{CallFailure, c_text};
 use crate::layout::{ddl_cells, ddl_misfit, ddl_occupancy, ddl_point, ddl_risks, ddl_view};
 use crate::model::Threads;
 use ddl::data::{HORIZON, Misfit, OBSERVED, ObservationQuality, Window};
-use ddl::scene::{Area, Futures, Occupancy, Plan};
+use ddl::scene::{Area, Futures, Occupancy, Plan, SceneError};
 use ddl::{Answer, Forecast};
 use std::ffi::CString;
 use std::ptr;
@@ -156,6 +156,9 @@ impl ShownAnswer {
         seen: bool,
     ) -> Result<(), CallFailure> {
         let (held, futures) = joint(self.held.as_ref())?;
+        if seen && futures.plan().is_some() {
+            return Err(CallFailure::invalid(SceneError::PlanGiven));
+        }
         let index = |id| {
             let index = held.window.pedestrians().iter().position(|known| known.0 == id);
             index.ok_or_else(|| CallFailure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))

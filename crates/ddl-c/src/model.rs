@@ -16,6 +16,8 @@ pub(crate) struct LoadedModel {
 impl LoadedModel {
     /// The built-in model of that name, or the model at that path.
     pub(crate) fn open(name: &str, threads: usize) -> Result<Self, CallFailure> {
+        // The fields of `ddl.h`.
+        ddl::word_settings(|name, _| format!("`{}`", if name == "fps" { "rate" } else { name }));
         let threads = Arc::new(Threads::new(threads)?);
         let source = ModelSource::named(Path::new(name));
         let ddl = threads.run(|| Ddl::open(&source, DeviceChoice::Cpu).map_err(CallFailure::file))?;

@@ -34,7 +34,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct ModelChoice {
     /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model: world, or one named after
     /// the scene it was trained without (eth, hotel, univ, zara1 or zara2) [default: world]
-    #[arg(long)]
+    #[arg(long, value_hint = clap::ValueHint::AnyPath)]
     model: Option<ModelPath>,
 }
 

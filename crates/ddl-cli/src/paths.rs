@@ -1,7 +1,7 @@
 //! Paths among the options, by what a command does with them, so that none writes over what it reads. A plain path is
 //! an input.
 
-use std::ffi::OsString;
+use clap::builder::{MapValueParser, PathBufValueParser, TypedValueParser as _, ValueParserFactory};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
 
@@ -11,9 +11,12 @@ macro_rules! path {
         #[derive(Debug, Clone)]
         pub(crate) struct $name(PathBuf);
 
-        impl From<OsString> for $name {
-            fn from(path: OsString) -> Self {
-                Self(path.into())
+        // As of every path, an empty one is refused.
+        impl ValueParserFactory for $name {
+            type Parser = MapValueParser<PathBufValueParser, fn(PathBuf) -> Self>;
+
+            fn value_parser() -> Self::Parser {
+                PathBufValueParser::new().map(Self)
             }
         }
 

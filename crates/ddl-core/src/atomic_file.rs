@@ -35,7 +35,8 @@ pub fn write_atomically_with<E: From<Error>>(
     let builder = builder.prefix(WRITING);
     // Temporary files are private by default, but results should have the usual permissions.
     #[cfg(unix)]
-    let mut file = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666)).tempfile_in(folder)?;
+    let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder)?;
     // A file that replaces a private one stays private.
     #[cfg(unix)]
     if let Ok(before) = path.metadata() {

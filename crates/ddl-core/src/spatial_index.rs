@@ -53,7 +53,6 @@ impl SpatialIndex {
         let size = half_width_m + centre[0].abs().max(centre[1].abs());
         let reach = half_width_m + 4.0 * f64::EPSILON * size;
         let corner = |sign: f64| centre.map(|x| x + sign * reach);
-        let envelope = AABB::from_corners(corner(-1.0), corner(1.0));
-        self.tree.locate_in_envelope(envelope)
+        self.tree.locate_in_envelope(AABB::from_corners(corner(-1.0), corner(1.0)))
     }
 }

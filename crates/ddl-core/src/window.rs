@@ -92,8 +92,7 @@ impl Window {
         }
         let frames = (0..).map(|t| start_frame + t * frame_step).take(steps).collect();
         let positions = tracks.into_iter().flatten().collect();
-        let recording = recording.into();
-        Ok(Self::cut(recording, frame_step, frames, pedestrians, positions))
+        Ok(Self::cut(recording.into(), frame_step, frames, pedestrians, positions))
     }
 
     /// A window cut from rows that are checked already: the positions are finite, the frames ascend, and the

@@ -58,8 +58,7 @@ impl<T: Real, const D: usize> MetricSchedule<T, D> {
 
 impl<T: Real, const D: usize> MetricSource<T, D> for MetricSchedule<T, D> {
     fn metric(&self, state: &State<T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
-        let last = self.metrics.len() - 1;
-        Ok(self.metrics[state.step.min(last)])
+        Ok(self.metrics[state.step.min(self.metrics.len() - 1)])
     }
 }
 

@@ -71,8 +71,7 @@ impl GoalSet {
     /// A set with only the [`central`](Self::central) goal, of weight 1; `observed` are the same positions (m).
     #[must_use]
     pub fn with_central_only(&self, observed: &[[f64; 2]]) -> Self {
-        let experts = self.experts().to_vec();
-        Self::new(vec![self.central(observed)], vec![1.0], experts)
+        Self::new(vec![self.central(observed)], vec![1.0], self.experts().to_vec())
     }
 }
 

@@ -119,8 +119,7 @@ impl GoalEstimator {
                     distance: neighbour.distance,
                     mirrored: false,
                 };
-                let experts = experts.iter().map(expert).collect();
-                Ok(GoalSet::new(goals, weights, experts))
+                Ok(GoalSet::new(goals, weights, experts.iter().map(expert).collect()))
             }
         }
     }

@@ -197,8 +197,7 @@ mod tests {
         for scale in 1..50 {
             let goal = [x * f64::from(scale), y * f64::from(scale)];
             let set = GoalSet::new(vec![goal], vec![1.0], Vec::new());
-            let radius = goal[0].hypot(goal[1]);
-            assert_eq!(set.clamped_to([0.0; 2], radius).goals(), [goal]);
+            assert_eq!(set.clamped_to([0.0; 2], goal[0].hypot(goal[1])).goals(), [goal]);
         }
     }
 

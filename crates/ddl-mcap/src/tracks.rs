@@ -97,7 +97,9 @@ fn choose(mut topics: BTreeMap<String, Topic>, asked: Option<&str>) -> Result<(S
     let mut found = topics.iter().filter(|(_, topic)| holds_tracks(topic)).map(|(name, _)| name.clone());
     match (asked, found.next(), found.next()) {
         (_, Some(name), None) => Ok(topics.remove_entry(&name).unwrap_or_default()),
-        (None, Some(_), _) => Err(format!("choose a topic by {}: {}", Setting::Topic, listed(holds_tracks)).into()),
+        (None, Some(_), _) => {
+            Err(format!("several topics hold tracks, choose one ({}): {}", Setting::Topic, listed(holds_tracks)).into())
+        }
         _ if topics.is_empty() => Err("there is no message; is the file empty or cut off?".into()),
         (None, None, _) => Err(format!("no tracks in {}; read is {READ}", listed(|_| true)).into()),
         (Some(asked), ..) => Err(match topics.get(asked) {

@@ -169,8 +169,7 @@ pub(crate) mod tests {
     pub(crate) fn memory(pedestrians: i64) -> SceneMemory {
         let mut memory = SceneMemory::new(3, 9_000).unwrap();
         for t in 0..29 * pedestrians {
-            let row = (PedestrianId(t / 29), position(t % 29, 0.0));
-            memory.observe(3 * t, [row]).unwrap();
+            memory.observe(3 * t, [(PedestrianId(t / 29), position(t % 29, 0.0))]).unwrap();
         }
         memory
     }

@@ -58,3 +58,13 @@ pub(crate) fn not_negative(name: &str, metres: f64) -> PyResult<()> {
     ensure!(metres >= 0.0 && metres.is_finite(), "{name} is {metres}; it must be a number of metres, 0 or more");
     Ok(())
 }
+
+/// Says how users of Python write settings: `max_age`, `fps=25`, `columns="frame=NAME"`.
+pub(crate) fn word_settings() {
+    ddl::word_settings(|name, value| match (name, value) {
+        ("unseen", _) => "seen=False".to_owned(),
+        (_, None) => name.to_owned(),
+        (_, Some(value)) if value.parse::<f64>().is_ok() => format!("{name}={value}"),
+        (_, Some(value)) => format!("{name}={value:?}"),
+    });
+}

@@ -21,7 +21,8 @@ pub(crate) struct EmptyFields {
     pub(crate) certified: bool,
     pub(crate) regions: bool,
     pub(crate) certificates: bool,
-    pub(crate) joint: bool,
+    /// Of joint futures, whether they were given a plan.
+    pub(crate) joint: Option<bool>,
 }
 
 /// A forecast of the requested pedestrians; NaN for those that cannot be forecast.
@@ -59,7 +60,7 @@ pub(crate) fn parts<'py>(
     dict.set_item("certified", certified.transpose()?)?;
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
     spread_and_regions(py, rows, forecast, empty, &dict)?;
-    let nobody = || empty.joint.then_some(FuturesHandle::NOBODY);
+    let nobody = || empty.joint.map(FuturesHandle::of_nobody);
     dict.set_item("futures", answer.map_or_else(nobody, |answer| FuturesHandle::of_rows(answer, rows)))?;
     let has_evidence = answer.map_or(empty.certificates, |answer| !answer.certificates().is_empty());
     let evidence = has_evidence.then(|| certificates(py, answer, rows, k));

@@ -20,8 +20,7 @@ impl GoalEstimator {
         let tracks = tracks("experts", &experts, WINDOW, false)?;
         let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(of_any)?;
         let params = GoalEstimatorParams { experts: similar, clusters: goals, ..Default::default() };
-        let estimator = ddl::goal::GoalEstimator::new(params, library).map_err(of_any)?;
-        Ok(Self(Arc::new(estimator)))
+        Ok(Self(Arc::new(ddl::goal::GoalEstimator::new(params, library).map_err(of_any)?)))
     }
 
     fn __len__(&self) -> usize {

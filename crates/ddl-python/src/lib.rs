@@ -54,13 +54,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        // A door says how its users write settings: `max_age`, `fps=25`, `columns="frame=NAME"`.
-        ddl::word_settings(|name, value| {
-            value.map_or(name.to_owned(), |value| match value.parse::<f64>() {
-                Ok(_) => format!("{name}={value}"),
-                Err(_) => format!("{name}={value:?}"),
-            })
-        });
+        crate::errors::word_settings();
         module.add("UNFAMILIAR", ddl::UNFAMILIAR_THRESHOLD)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

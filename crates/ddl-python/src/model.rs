@@ -8,7 +8,9 @@ use crate::observed::{ObservedScene, past_tracks};
 use crate::recording::{Recording, doubt};
 use crate::scene::plan;
 use ddl::data::{Completeness, PedestrianId, Window};
-use ddl::{Answer, Ddl, DdlError, DeviceChoice, GivenPlan, ModelSource, RecordingPlayer, Request, WindowOptions};
+use ddl::{
+    Answer, Ddl, DdlError, DeviceChoice, GivenPlan, ModelSource, Motions, RecordingPlayer, Request, WindowOptions,
+};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -100,7 +102,7 @@ impl ForecastModel {
         let mut request = request(&self.0, samples, certificates, joint)?;
         if let Some((rows, ego)) = given {
             let (plan, ego) = (plan(&rows)?, ego.map(|row| PedestrianId(row).into()));
-            request = Request::given(GivenPlan { plan, ego });
+            request.motions = Motions::Given(GivenPlan { plan, ego });
         }
         let completeness = Completeness::of(whole);
         let pasts = past.iter().map(past_tracks).collect::<PyResult<Vec<_>>>()?;
@@ -111,15 +113,15 @@ impl ForecastModel {
         })?;
         let scenes = scenes.map_err(of_any)?;
         let windows: Vec<Window> = scenes.iter().filter_map(|scene| scene.window.clone()).collect();
-        let mut forecasts = self.answers(py, request, windows)?.into_iter();
         let empty = EmptyFields {
             hypotheses: if samples == 1 { 1 } else { self.hypotheses() },
             goals: self.0.config().star.variant.uses_goal(),
             certified: self.0.config().star.variant.dynamics() || samples == 1,
             regions: samples > 1,
             certificates,
-            joint,
+            joint: joint.then(|| request.plan().is_some()),
         };
+        let mut forecasts = self.answers(py, request, windows)?.into_iter();
         let of_scene = |scene: &ObservedScene| {
             let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
             parts(py, scene, forecast.as_ref(), empty)
@@ -169,8 +171,7 @@ impl ForecastModel {
                 }
             }
         }
-        let goals = array(py, numbers(goals), [asked, k, 2])?;
-        Ok((goals, array(py, weights, [asked, k])?))
+        Ok((array(py, numbers(goals), [asked, k, 2])?, array(py, weights, [asked, k])?))
     }
 
     /// Whether the model was trained on the tracks of the recording.

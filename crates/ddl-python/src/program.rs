@@ -9,6 +9,8 @@ use std::io::Write as _;
 pub(crate) fn main(py: Python<'_>, arguments: Vec<String>) -> u8 {
     py.detach(|| {
         let code = ddl_cli::run(arguments);
+        // The program has words of its own.
+        crate::errors::word_settings();
         // Python's exit does not flush Rust's standard output. An error means that the reader has closed the output.
         let _ = std::io::stdout().flush();
         code

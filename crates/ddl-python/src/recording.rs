@@ -242,7 +242,6 @@ impl Recording {
 
     /// Text that describes a fault suggested by the speeds.
     fn doubt(&self) -> Option<String> {
-        let warning = self.tracks.speed_warning()?;
-        Some(ddl::in_frames(self.moments.clock, warning).to_string())
+        Some(ddl::in_frames(self.moments.clock, self.tracks.speed_warning()?).to_string())
     }
 }

@@ -5,7 +5,7 @@ use crate::errors::{ensure, not_negative, of_any};
 use crate::interruptible::run;
 use ddl::Answer;
 use ddl::data::HORIZON;
-use ddl::scene::{Area, Futures, Occupancy, Plan, PlanPoint};
+use ddl::scene::{Area, Futures, Occupancy, Plan, PlanPoint, SceneError};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -14,7 +14,11 @@ use std::sync::Arc;
 /// Joint futures of the pedestrians that were asked for; `None` if none of them can be forecast.
 #[pyclass(frozen, name = "Futures", module = "ddl_forecast._core")]
 #[derive(Debug, Clone)]
-pub(crate) struct FuturesHandle(Option<Arc<Futures>>);
+pub(crate) struct FuturesHandle {
+    futures: Option<Arc<Futures>>,
+    /// Whether they were given a plan.
+    is_given: bool,
+}
 
 /// A plan of the rows t, x, y and radius.
 pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
@@ -35,10 +39,13 @@ impl FuturesHandle {
         let futures = answer.futures().ok()?;
         futures.forecast().regions()?;
         let rows: Vec<usize> = rows.iter().copied().flatten().collect();
-        Some(Self((!rows.is_empty()).then(|| Arc::new(futures.of_pedestrians(&rows)))))
+        let some = (!rows.is_empty()).then(|| Arc::new(futures.of_pedestrians(&rows)));
+        Some(Self { futures: some, is_given: futures.plan().is_some() })
     }
 
-    pub(crate) const NOBODY: Self = Self(None);
+    pub(crate) fn of_nobody(is_given: bool) -> Self {
+        Self { futures: None, is_given }
+    }
 }
 
 fn plans_of(plans: &[PyReadonlyArray2<'_, f64>]) -> PyResult<Vec<Plan>> {
@@ -58,9 +65,12 @@ impl FuturesHandle {
         seen: bool,
     ) -> PyResult<[Py<PyAny>; 4]> {
         not_negative("within", within)?;
+        if seen && self.is_given {
+            return Err(of_any(SceneError::PlanGiven));
+        }
         let plans = plans_of(&plans)?;
         let count = plans.len();
-        let Some(futures) = self.0.clone() else {
+        let Some(futures) = self.futures.clone() else {
             let none = |width: usize| array(py, vec![0.0; count * width], [count, width]);
             return Ok([array(py, vec![0.0; count], [count])?, none(0)?, none(HORIZON)?, none(HORIZON)?]);
         };
@@ -80,7 +90,7 @@ impl FuturesHandle {
     fn clearances<'py>(&self, py: Python<'py>, plans: Vec<PyReadonlyArray2<'py, f64>>) -> PyResult<[Py<PyAny>; 2]> {
         let plans = plans_of(&plans)?;
         let count = plans.len();
-        let Some(futures) = self.0.clone() else {
+        let Some(futures) = self.futures.clone() else {
             let nobody = array(py, Vec::<f64>::new(), [count, 0])?;
             return Ok([array(py, vec![f64::INFINITY; count], [count])?, nobody]);
         };
@@ -99,7 +109,7 @@ impl FuturesHandle {
         area: Option<[f64; 4]>,
     ) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2])> {
         let (cell, every, radius, margin) = options;
-        let futures = self.0.clone();
+        let futures = self.futures.clone();
         let area = match (area, &futures) {
             (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
             (None, Some(futures)) => futures.area(margin, cell),
@@ -121,19 +131,18 @@ impl FuturesHandle {
             }
         })?;
         let grids: Vec<f32> = grids.map_err(|error: ddl::scene::SceneError| of_any(error))?;
-        let grids = array(py, grids, [times.len(), height, width])?;
-        Ok((grids, times, area.origin()))
+        Ok((array(py, grids, [times.len(), height, width])?, times, area.origin()))
     }
 
     /// How a pickle makes it again.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Option<String>,))> {
-        let json = self.0.as_deref().map(serde_json::to_string).transpose().map_err(of_any)?;
-        Ok((py.get_type::<Self>().getattr("of_json")?, (json,)))
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (Option<String>, bool))> {
+        let json = self.futures.as_deref().map(serde_json::to_string).transpose().map_err(of_any)?;
+        Ok((py.get_type::<Self>().getattr("of_json")?, (json, self.is_given)))
     }
 
     #[staticmethod]
-    fn of_json(json: Option<&str>) -> PyResult<Self> {
+    fn of_json(json: Option<&str>, is_given: bool) -> PyResult<Self> {
         let futures = json.map(serde_json::from_str).transpose().map_err(of_any)?;
-        Ok(Self(futures.map(Arc::new)))
+        Ok(Self { futures: futures.map(Arc::new), is_given })
     }
 }

@@ -49,9 +49,9 @@ def test_words_and_rates(tmp_path):
     file = tmp_path / "x.ndjson"
     ddl.Recording(10 * frame, [1, 2] * 40, np.arange(80) * 0.01, np.zeros(80)).write(file, format="trajnet")
     file.write_text('{"scene": {"id": 0, "p": 1, "s": 0, "e": 390, "fps": 2}}\n' + file.read_text())
-    with pytest.warns(ddl.DoubtWarning, match="read as --fps 20"):
+    with pytest.warns(ddl.DoubtWarning, match="read as fps=20"):
         assert ddl.read(file).frame_step == 8
-    with pytest.warns(ddl.DoubtWarning, match="read as --fps 25, although the file gives 2 frames per second"):
+    with pytest.warns(ddl.DoubtWarning, match="read as fps=25, although the file gives 2 frames per second"):
         assert ddl.read(file, fps=25).frame_step == 10
 
 

@@ -130,8 +130,7 @@ impl ForecastSnapshot {
         if longest > HORIZON {
             return Err(EvaluationError::Seen { longest });
         }
-        let fold = window.recording().to_owned();
-        Ok(Self::of((fold, forecaster.into()), window, forecast, &seen))
+        Ok(Self::of((window.recording().to_owned(), forecaster.into()), window, forecast, &seen))
     }
 
     fn of((fold, forecaster): (String, String), window: &Window, forecast: &Forecast, truths: &[&[Position]]) -> Self {

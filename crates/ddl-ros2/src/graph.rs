@@ -100,8 +100,7 @@ pub(crate) fn open(options: &NodeArguments) -> anyhow::Result<Node> {
         participant = participant.with_only_networks(options.interface.iter().copied());
     }
     let context = Context::from_domain_participant(participant.build()?)?;
-    let name = NodeName::new(&options.namespace, &options.name)?;
-    Ok(context.new_node(name, NodeOptions::new())?)
+    Ok(context.new_node(NodeName::new(&options.namespace, &options.name)?, NodeOptions::new())?)
 }
 
 fn reliable(depth: usize) -> QosProfile {

@@ -67,8 +67,7 @@ pub(crate) fn run<T: Tracks + 'static>(options: &NodeArguments) -> anyhow::Resul
             publish(&outputs.diagnostics, report).unwrap_or_else(|error| forecasting.health.fault(&error));
         }
     }
-    forecasting.place.close();
-    Ok(())
+    forecasting.place.close()
 }
 
 struct Forecasting<'a> {
@@ -114,6 +113,7 @@ impl Forecasting<'_> {
             None => {}
         }
         self.health.skipped = self.place.skipped();
+        self.place.save(&mut self.health);
         Ok(())
     }
 

@@ -75,8 +75,6 @@ impl WatchedPlace {
         for note in notes {
             match note {
                 Note::Misfits { misfits, .. } => health.doubtful += misfits.len(),
-                // A memory that cannot be written costs no forecast.
-                Note::MemoryUnwritten(_) => health.fault(&anyhow!("{note}")),
                 note => health.warn(&note.to_string()),
             }
         }
@@ -99,11 +97,20 @@ impl WatchedPlace {
         self.session.waiting().dropped()
     }
 
+    /// Writes the memory, if a minute has passed; it costs no forecast.
+    pub(crate) fn save(&mut self, health: &mut Health) {
+        self.session.write_due().iter().for_each(|note| health.fault(&anyhow!("{note}")));
+    }
+
     /// Writes the memory for the last time.
-    pub(crate) fn close(mut self) {
+    pub(crate) fn close(mut self) -> anyhow::Result<()> {
         for note in self.session.close() {
-            tell(&note.line());
+            match note {
+                Note::MemoryFailed(error) => return Err(error.into()),
+                note => tell(&note.line()),
+            }
         }
+        Ok(())
     }
 }
 

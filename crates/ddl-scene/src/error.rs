@@ -1,5 +1,7 @@
 //! Errors of this crate.
 
+use ddl_core::Setting;
+
 /// A forecast is not one of joint futures, does not belong to its window, or cannot answer what was asked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -15,8 +17,9 @@ pub enum SceneError {
     #[error("risk and occupancy are of joint futures; these are forecasts of each pedestrian alone")]
     Alone,
     #[error(
-        "the people of these futures already keep away from the plan that they were given: ask for a risk that takes \
-         plans as unseen"
+        "the people of these futures already keep away from the plan that they were given: ask for the risk of \
+         plans that nobody sees ({})",
+        Setting::Unseen
     )]
     PlanGiven,
     #[error("a forecast without spread has no risk and no occupancy; make it with all hypotheses of a model")]

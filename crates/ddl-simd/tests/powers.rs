@@ -14,8 +14,7 @@ impl Kernel for Powers<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         for lanes in self.0 {
-            let power = simd.exp2(simd.load(lanes));
-            simd.store(power, lanes);
+            simd.store(simd.exp2(simd.load(lanes)), lanes);
         }
     }
 }

@@ -121,8 +121,7 @@ impl<const D: usize> Slanted<D> {
         for (b, block) in blocks.iter_mut().enumerate() {
             for (k, numbers) in block.iter_mut().enumerate() {
                 for (i, number) in numbers.iter_mut().enumerate() {
-                    let column = ((b + 1) * BLOCK - 1).saturating_sub(i).min(last);
-                    *number = columns[column][k];
+                    *number = columns[((b + 1) * BLOCK - 1).saturating_sub(i).min(last)][k];
                 }
             }
         }

@@ -69,8 +69,7 @@ impl Range {
     pub(crate) fn smallest_accurate_log2(&self) -> f64 {
         let start = f64::from(self.start_log2);
         let clamp = start + self.paths_log2 - f64::from(COST_LIMIT);
-        let floor = self.floor.log2() + self.tails_log2;
-        clamp.max(floor) + 1.0 + HEADROOM
+        clamp.max(self.floor.log2() + self.tails_log2) + 1.0 + HEADROOM
     }
 
     /// Bound on the error of log2(score) for scores of at least `score_log2` (start included), for inputs of

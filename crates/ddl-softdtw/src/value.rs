@@ -69,8 +69,7 @@ impl SoftDtw {
     /// # Errors
     /// As [`SoftDtw::value`].
     pub fn normalised<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> Result<f64, SoftDtwError> {
-        let value = self.value(x, y)?;
-        finite(normalise(value, self.self_value(x), self.self_value(y)))
+        finite(normalise(self.value(x, y)?, self.self_value(x), self.self_value(y)))
     }
 
     /// `D_γ(x, x)` of a checked sequence. Exactly 0 for γ = 0.

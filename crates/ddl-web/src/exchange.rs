@@ -36,7 +36,7 @@ pub(crate) fn word_settings() {
         let name = parts.fold(first, |name, part| name + &capital(part));
         value.map_or(name.clone(), |value| match value.parse::<f64>() {
             Ok(_) => format!("{name}: {value}"),
-            Err(_) => format!("{name}: \"{value}\""),
+            Err(_) => format!("{name}: {value:?}"),
         })
     });
 }

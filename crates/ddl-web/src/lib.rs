@@ -58,5 +58,6 @@ fn asked(
     options: &JsValue,
     answer: impl FnOnce(BrowserOptions) -> Result<JsValue, Failure>,
 ) -> Result<JsValue, JsError> {
+    exchange::word_settings();
     exchange::read(options, &[]).and_then(answer).map_err(|failure| thrown(&*failure))
 }

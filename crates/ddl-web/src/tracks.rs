@@ -80,8 +80,7 @@ impl FileTracks {
     }
 
     fn empty_memory(&self) -> Result<SceneMemory, Failure> {
-        let step = self.observed.recording.frame_step();
-        Ok(SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY)?)
+        Ok(SceneMemory::new(self.observed.recording.frame_step(), SceneMemory::DEFAULT_CAPACITY)?)
     }
 }
 

@@ -16,14 +16,8 @@ use std::path::Path;
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let (tracks, frame, picture, model) = match arguments.as_slice() {
-        [tracks, frame, picture] => {
-            let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
-            (tracks, frame, picture, model)
-        }
-        [tracks, frame, picture, model] => {
-            let model = Ddl::load(Path::new(model), DeviceChoice::Cpu)?;
-            (tracks, frame, picture, model)
-        }
+        [tracks, frame, picture] => (tracks, frame, picture, Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?),
+        [tracks, frame, picture, model] => (tracks, frame, picture, Ddl::load(Path::new(model), DeviceChoice::Cpu)?),
         _ => return Err("usage: draw_forecast TRACKS.csv FRAME PICTURE.svg [MODEL]".into()),
     };
     let recording = read_recording(Path::new(tracks), Format::Table)?;

@@ -46,8 +46,7 @@ impl Device {
     /// When libtorch cannot compute.
     #[cfg(feature = "torch")]
     pub(crate) fn libtorch_on_cpu() -> Result<Self, DdlError> {
-        let device = ddl_star::ComputeDevice::open(DeviceChoice::Cpu)?;
-        Ok(Self::Torch(device))
+        Ok(Self::Torch(ddl_star::ComputeDevice::open(DeviceChoice::Cpu)?))
     }
 
     /// "cpu" or "cuda", as reports print it.

@@ -32,8 +32,11 @@ pub enum DdlError {
     Rate { given: String },
     #[error(transparent)]
     Windows(#[from] crate::tracks::windows::OutOfGap),
-    #[error("the moment is {0}; it must be a number of seconds below 9e9, or with a rate a frame number below 2^53")]
-    Moment(f64),
+    #[error(
+        "the moment is {at}; it must be a number of seconds below 9e9, or with {} a frame number below 2^53",
+        Setting::Fps
+    )]
+    Moment { at: f64 },
     #[error("at {at}{}: {error}", if *.is_time { " s (frames are microseconds)" } else { "" })]
     At { at: f64, is_time: bool, error: Box<Self> },
     #[error("{}", memory_of_scenes(path, *.is_folder))]

@@ -100,8 +100,8 @@ pub use windows::test_set::{Split, test_set_name};
 pub mod data {
     pub use ddl_core::{
         COORDINATE_LIMIT, FRAME_LIMIT, HORIZON, Numbering, OBSERVED, ObservationQuality, PedestrianId, PedestrianName,
-        PedestrianNames, Position, RememberedTrack, TIME_STEP, WINDOW, Window, WindowError, between, distance,
-        remove_temporary_files, write_atomically, write_atomically_with,
+        PedestrianNames, Position, RememberedTrack, Rotation, SpatialIndex, TIME_STEP, WINDOW, Window, WindowError,
+        between, distance, remove_temporary_files, write_atomically, write_atomically_with,
     };
     pub use ddl_data::*;
 }

@@ -99,8 +99,7 @@ fn make_environment(workspace: &Workspace) -> Result<()> {
         "no virtual environment could be created: install Python's venv, on Debian or Ubuntu with \
          `apt install python3-venv`",
     )?;
-    let options = ["--only-binary=:all:", "--requirement", REQUIREMENTS];
-    run(pip_install(workspace).args(options))
+    run(pip_install(workspace).args(["--only-binary=:all:", "--requirement", REQUIREMENTS]))
 }
 
 fn build(workspace: &Workspace) -> Result<PathBuf> {

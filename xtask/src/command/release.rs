@@ -205,8 +205,7 @@ fn checksums(_: &Workspace, files: &Path) -> Result<()> {
         let name = file.file_name().unwrap_or_default().display().to_string();
         Ok(format!("{}  {name}\n", sha256(&file)?))
     });
-    let sums = sums.collect::<Result<String>>()?;
-    fs::write(files.join("SHA256SUMS"), sums).context("SHA256SUMS")
+    fs::write(files.join("SHA256SUMS"), sums.collect::<Result<String>>()?).context("SHA256SUMS")
 }
 
 /// The files of a folder with this extension, or all, by name.

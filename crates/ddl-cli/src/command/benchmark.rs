@@ -75,7 +75,7 @@ pub(crate) struct Benchmark {
     threads: Option<usize>,
     /// Folder of the results; a benchmark in it is resumed [default: `runs/CONVENTION-PROFILE`, and
     /// `runs/CONVENTION-PROFILE-published` with the protocol published]
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_hint = clap::ValueHint::AnyPath)]
     out: Option<OutputPlace>,
     #[command(flatten)]
     reporting: Reporting,
@@ -184,8 +184,7 @@ impl Benchmark {
         tell(format_args!("plan: {tasks} tasks, {jobs} at a time with {threads} threads each, in {}", out.display()));
         let display = Display::new(&plan.tasks, self.reporting.telling.progress);
         let watch = |task: &Task, event: work::Event<'_>| display.note_event(task, event);
-        let ends = self.workers(jobs, threads)?.run(plan, out, &watch, &interrupt);
-        Ok(ends)
+        Ok(self.workers(jobs, threads)?.run(plan, out, &watch, &interrupt))
     }
 
     fn workers(&self, jobs: usize, threads: usize) -> anyhow::Result<Workers> {

@@ -31,7 +31,7 @@ pub(crate) struct Evaluate {
     /// Model: the directory of a run, a packed file, or a built-in model. It is evaluated on the scene it was trained
     /// without, or on your own recordings (--data FOLDER) [default: the built-in model trained without --fold; on own
     /// recordings world]
-    #[arg(long, conflicts_with_all = ["forecasts", "fold", "window_rule"])]
+    #[arg(long, conflicts_with_all = ["forecasts", "fold", "window_rule"], value_hint = clap::ValueHint::AnyPath)]
     model: Option<ModelPath>,
     #[command(flatten)]
     other: OtherProgram,
@@ -54,7 +54,7 @@ pub(crate) struct Evaluate {
     test_pedestrians: Option<usize>,
     /// Write the futures of the protocol joint into a new folder, as the sample files of Joint Metrics Matter
     /// (docs/your-model.md)
-    #[arg(long, value_name = "FOLDER", conflicts_with = "forecasts")]
+    #[arg(long, value_name = "FOLDER", conflicts_with = "forecasts", value_hint = clap::ValueHint::AnyPath)]
     samples: Option<OutputPlace>,
     #[command(flatten)]
     machine: Machine,

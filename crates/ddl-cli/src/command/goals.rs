@@ -34,7 +34,7 @@ pub(crate) struct Goals {
     #[command(flatten)]
     telling: Telling,
     /// File to write [default: standard output]
-    #[arg(long, short)]
+    #[arg(long, short, value_hint = clap::ValueHint::AnyPath)]
     output: Option<OutputFile>,
     #[command(flatten)]
     machine: Machine,

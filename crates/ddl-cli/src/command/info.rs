@@ -15,7 +15,7 @@ use std::path::PathBuf;
 #[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 pub(crate) struct Info {
     /// Directory of a run, a packed file, or the name of a built-in model [default: the program itself]
-    #[arg(value_name = "MODEL")]
+    #[arg(value_name = "MODEL", value_hint = clap::ValueHint::AnyPath)]
     model: Option<ModelPath>,
     /// The model as in other commands
     #[arg(long = "model", value_name = "MODEL", conflicts_with = "model", hide = true)]

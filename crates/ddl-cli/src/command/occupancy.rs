@@ -34,7 +34,7 @@ pub(crate) struct OccupancyCommand {
     #[arg(long, default_value_t = Occupancy::BODY, allow_negative_numbers = true)]
     radius: f64,
     /// Folder for the files of npy and pgm, created if missing
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_hint = clap::ValueHint::AnyPath)]
     folder: Option<OutputPlace>,
     /// Format: jsonl (one message of the layout of `nav_msgs/OccupancyGrid` for each time), npy (one array of times,
     /// rows and columns for each moment) or pgm (one image for each time), both with a yaml of origin and resolution

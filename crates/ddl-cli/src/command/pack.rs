@@ -20,17 +20,17 @@ use std::path::Path;
 #[command(after_help = "Example:\n  ddl pack --model runs/zara1 --out zara1.safetensors")]
 pub(crate) struct Pack {
     /// Directory of a finished run
-    #[arg(long, required_unless_present = "benchmark")]
+    #[arg(long, required_unless_present = "benchmark", value_hint = clap::ValueHint::AnyPath)]
     model: Option<ModelPath>,
     /// Folder of a finished benchmark on star recordings instead of --model: packs one file for each fold, with its
     /// results, as for the models that come with the program
-    #[arg(long, value_name = "DIR", conflicts_with = "model")]
+    #[arg(long, value_name = "DIR", conflicts_with = "model", value_hint = clap::ValueHint::AnyPath)]
     benchmark: Option<ModelPath>,
     /// Seed of the runs to pack [default: the lowest of the benchmark]
     #[arg(long, requires = "benchmark")]
     seed: Option<u64>,
     /// File to write; for a benchmark, folder to write to
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::AnyPath)]
     out: OutputPlace,
     #[command(flatten)]
     telling: Telling,

@@ -21,7 +21,7 @@ pub(crate) struct ReportCommand {
     #[arg(long, default_value = "Results")]
     title: String,
     /// Folder to write to
-    #[arg(long)]
+    #[arg(long, value_hint = clap::ValueHint::AnyPath)]
     out: OutputPlace,
     #[command(flatten)]
     telling: Telling,

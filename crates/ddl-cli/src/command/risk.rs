@@ -106,8 +106,7 @@ impl RiskCommand {
             let until = line.until.map(table_share);
             writer.serialize((Vec::from_iter(line.scene), row, worst.unzip(), until))?;
         }
-        let bytes = writer.into_inner().context("cannot finish the csv")?;
-        Ok(String::from_utf8(bytes)?)
+        Ok(String::from_utf8(writer.into_inner().context("cannot finish the csv")?)?)
     }
 }
 

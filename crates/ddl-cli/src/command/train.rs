@@ -62,7 +62,7 @@ pub(crate) struct Train {
     /// a run, whose sizes are taken; `none` for random weights. Training takes fewer and smaller steps, and the
     /// starting model is kept if training does not improve it on the validation part [default: none; world for own
     /// recordings with fewer than 10000 pedestrian-windows]
-    #[arg(long, value_name = "MODEL")]
+    #[arg(long, value_name = "MODEL", value_hint = clap::ValueHint::AnyPath)]
     from: Option<ModelPath>,
     /// Random seed
     #[arg(long, default_value_t = 1)]
@@ -109,7 +109,7 @@ pub(crate) struct Train {
     #[arg(long)]
     only_goals: bool,
     /// Directory of the run
-    #[arg(long)]
+    #[arg(long, value_hint = clap::ValueHint::AnyPath)]
     out: OutputPlace,
     #[command(flatten)]
     machine: Machine,

@@ -31,7 +31,7 @@ pub(crate) struct ViewCommand {
     #[arg(long)]
     joint: bool,
     /// Page to write [default: the name of the tracks with -forecasts.html, in the current folder]
-    #[arg(long, short)]
+    #[arg(long, short, value_hint = clap::ValueHint::AnyPath)]
     output: Option<OutputFile>,
     /// Do not open the page; by default it is opened if standard output is a terminal
     #[arg(long)]

@@ -21,7 +21,7 @@ pub(crate) struct WindowsCommand {
     #[command(flatten)]
     recordings: RecordingsAt,
     /// File to write [default: standard output]
-    #[arg(long, short)]
+    #[arg(long, short, value_hint = clap::ValueHint::AnyPath)]
     output: Option<OutputFile>,
 }
 

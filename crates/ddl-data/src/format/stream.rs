@@ -84,7 +84,7 @@ pub struct FrameReader<R> {
     /// The last frames of scenes that were forgotten.
     left: VecDeque<Frame>,
     /// The scene of the last line.
-    spoken_of: Option<SceneName>,
+    last_scene: Option<SceneName>,
     first: Option<FirstRow>,
     /// Number of pedestrians in incomplete frames.
     unfinished: usize,
@@ -143,7 +143,7 @@ impl<R: BufRead> FrameReader<R> {
             numbers: BTreeSet::new(),
             scenes: BTreeMap::new(),
             left: VecDeque::new(),
-            spoken_of: None,
+            last_scene: None,
             first: None,
             unfinished: 0,
             idle_timeout: IDLE_TIMEOUT,
@@ -179,7 +179,7 @@ impl<R: BufRead> FrameReader<R> {
             };
             let text = text.to_owned();
             let frame = if text.trim().is_empty() {
-                self.take_frame(&self.spoken_of.clone())
+                self.take_frame(&self.last_scene.clone())
             } else {
                 let added = self.row(&text)?.map(|row| self.add(row)).transpose();
                 added.map_err(|fault| self.lines.wrong(fault))?.flatten()
@@ -275,8 +275,8 @@ impl<R: BufRead> FrameReader<R> {
     /// Adds an observation. If it begins a new frame of its scene, returns the previous frame of the scene.
     fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, Fault> {
         self.refuse_mixed(&seen)?;
-        self.hear(&seen.scene)?;
-        self.spoken_of.clone_from(&seen.scene);
+        self.note_activity(&seen.scene)?;
+        self.last_scene.clone_from(&seen.scene);
         let name = seen.scene.clone();
         let before = self.begin_frame(&name, seen.frame)?;
         let (pedestrian, word) = self.numbered(&name, seen.pedestrian);
@@ -349,7 +349,7 @@ impl<R: BufRead> FrameReader<R> {
     }
 
     /// Makes room for a new scene, and forgets idle scenes.
-    fn hear(&mut self, name: &Option<SceneName>) -> Result<(), Fault> {
+    fn note_activity(&mut self, name: &Option<SceneName>) -> Result<(), Fault> {
         let idle_timeout = self.idle_timeout;
         match self.scenes.get_mut(name) {
             Some(scene) if name.is_none() || scene.heard.elapsed() < idle_timeout => {

@@ -94,8 +94,7 @@ impl SceneDraw {
     }
 
     pub(crate) fn flow<T: Real, const D: usize>(&self) -> NaturalGradientFlow<T, D, MetricSchedule<T, D>> {
-        let metrics = MetricSchedule::new(self.metrics()).unwrap();
-        NaturalGradientFlow::new(self.attractor(), metrics)
+        NaturalGradientFlow::new(self.attractor(), MetricSchedule::new(self.metrics()).unwrap())
     }
 
     /// The time step (seconds): positive and finite in `T`.

@@ -92,8 +92,7 @@ fn a_step_below_the_spacing_of_f32_still_shows() {
     assert_eq!(step, Vector2::new(1.0 - f32::EPSILON, 0.0));
     // One spacing from the goal: the next number is the goal itself.
     let near = Attractor::new(Vector2::new(1.0_f32.next_down(), 0.0)).unwrap();
-    let step = StableEuler::advance(&near, &start, &velocity, 0.4).unwrap();
-    assert_eq!(step, *near.goal());
+    assert_eq!(StableEuler::advance(&near, &start, &velocity, 0.4).unwrap(), *near.goal());
 }
 
 #[test]

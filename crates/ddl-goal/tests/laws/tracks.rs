@@ -19,6 +19,5 @@ pub(crate) fn walk(speed: f64, heading: f64, turn: f64) -> Positions {
 }
 
 pub(crate) fn estimator(params: GoalEstimatorParams, tracks: Vec<Positions>) -> GoalEstimator {
-    let library = ExpertLibrary::new(tracks, 0.4).unwrap();
-    GoalEstimator::new(params, library).unwrap()
+    GoalEstimator::new(params, ExpertLibrary::new(tracks, 0.4).unwrap()).unwrap()
 }

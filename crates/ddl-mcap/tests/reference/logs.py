@@ -107,7 +107,7 @@ def topics():
     for messages, asked, topic, x in [(one, None, "/b", 1.5), (two, "/b", "/b", 1.5), (two, "/a", "/a", 0.5)]:
         yield case(messages, [[1_000_000, "7", x, 3.0]], [f"topic {topic} {kind}{note}"], asked)
     for messages, asked, error in [
-        (two, None, f"choose a topic by --topic: /a {kind}, /b {kind}"),
+        (two, None, f"several topics hold tracks, choose one (topic): /a {kind}, /b {kind}"),
         (one, "/chatter", "topic /chatter holds no tracks but std_msgs/msg/String as json; read is"),
         (one, "/c", f"no message of topic /c; there are /b {kind}, /chatter (std_msgs/msg/String as json, 1 mess"),
         ([TEXT], None, "no tracks in /chatter (std_msgs/msg/String as json, 1 messages); read is"),

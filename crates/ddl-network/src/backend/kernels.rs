@@ -303,8 +303,7 @@ mod tests {
         let sizes = Sizes { width: 8, heads: 2, hidden: 3 };
         let layer = layout.encoder_layer("layer", sizes, dropout);
         let numbers = vec![0.0; layout.count()];
-        let kernels = Kernels::new(&Arc::new(layout), &numbers);
-        (Arc::new(kernels), layer)
+        (Arc::new(Kernels::new(&Arc::new(layout), &numbers)), layer)
     }
 
     #[test]

@@ -16,11 +16,9 @@ pub(super) fn at_least_one(field: &'static str, value: u64) -> Result<(), Networ
 }
 
 pub(super) fn positive(field: &'static str, value: f64) -> Result<(), NetworkError> {
-    let holds = value.is_finite() && value > 0.0;
-    require(holds, field, &value, "finite and positive")
+    require(value.is_finite() && value > 0.0, field, &value, "finite and positive")
 }
 
 pub(super) fn not_negative(field: &'static str, value: f64) -> Result<(), NetworkError> {
-    let holds = value.is_finite() && value >= 0.0;
-    require(holds, field, &value, "finite and not negative")
+    require(value.is_finite() && value >= 0.0, field, &value, "finite and not negative")
 }

@@ -139,8 +139,7 @@ fn speeds<S: Simd>(distance: Floats<S>, top: Floats<S>, time: StepTime<f32>) -> 
     let (reach, later) = (distance / time.dt, top * (time.left - 1) as f32);
     let slowest = s * MotionBounds::<f32>::MIN_SPEED_RATIO as f32;
     let fastest = s * MotionBounds::<f32>::MAX_SPEED_RATIO as f32;
-    let range = [slowest.max(reach - later).min(s), fastest.min(reach).min(top).max(s)];
-    (s, range)
+    (s, [slowest.max(reach - later).min(s), fastest.min(reach).min(top).max(s)])
 }
 
 /// The neutral metric before its eigenvalues are brought within the range.
@@ -193,8 +192,7 @@ fn axes<S: Simd>(
     let (mean, half) = (xx * 0.5 + yy * 0.5, xx * 0.5 - yy * 0.5);
     let (radius, double) = polar([half, xy], exact);
     let first = (mean + radius).max(smallest).min(largest);
-    let second = (mean - radius).max(smallest).min(largest);
-    ([first, second], double)
+    ([first, (mean - radius).max(smallest).min(largest)], double)
 }
 
 /// Cosine and sine of half the angle with this cosine and sine.
@@ -202,8 +200,7 @@ fn axes<S: Simd>(
 fn half_angle<S: Simd>(simd: S, [cos, sin]: [Floats<S>; 2], exact: &mut u32) -> [Floats<S>; 2] {
     let ahead = cos.simd_ge(simd.splat(0.0));
     let x = ahead.select(cos + 1.0, sin);
-    let y = ahead.select(sin, simd.splat(1.0) - cos);
-    polar([x, y], exact).1
+    polar([x, ahead.select(sin, simd.splat(1.0) - cos)], exact).1
 }
 
 #[inline(always)]

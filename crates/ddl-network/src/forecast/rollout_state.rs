@@ -165,14 +165,12 @@ impl<'a> RolloutState<'a> {
         for (places, sums) in entries.zip(self.sums.chunks_exact(pedestrians)) {
             self.observation.centre(places, sums, steps);
         }
-        let hypotheses = self.positions.len() / pedestrians;
-        rows([hypotheses, pedestrians, 2], centred)
+        rows([self.positions.len() / pedestrians, pedestrians, 2], centred)
     }
 
     /// Inputs of the temporal encoders at an observed time step, `[E, P, inputs]`.
     pub(super) fn observed_relative(&self, t: usize) -> Rc<Rows> {
-        let before = self.observation.at(t.saturating_sub(1));
-        self.relative(self.observation.at(t), before)
+        self.relative(self.observation.at(t), self.observation.at(t.saturating_sub(1)))
     }
 
     /// Inputs of the temporal encoders from `positions` and the positions one step before, `[1 or H, P]`: relative to

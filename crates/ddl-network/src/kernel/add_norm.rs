@@ -114,8 +114,7 @@ impl AddNorm {
                 let number = four.get(simd, r, v) * scale;
                 four.set(simd, r, v, number);
                 let weight = simd.load(&self.weight[v].0);
-                let bias = simd.load(&self.bias[v].0);
-                store(simd, number.mul_add(weight, bias), y, v * LANES);
+                store(simd, number.mul_add(weight, simd.load(&self.bias[v].0)), y, v * LANES);
             }
         }
         if !normal.scales.is_empty() {
@@ -207,8 +206,7 @@ impl AddNorm {
         }
         for v in 0..vectors {
             for (sum, into) in sums.iter().zip([&mut *of_weight, &mut *of_bias]) {
-                let total = load(simd, into, v * LANES) + sum.get(simd, 0, v);
-                store(simd, total, into, v * LANES);
+                store(simd, load(simd, into, v * LANES) + sum.get(simd, 0, v), into, v * LANES);
             }
         }
     }

@@ -20,8 +20,7 @@ impl Kernel for Gelu<'_> {
     fn run<S: Simd>(self, simd: S) {
         let (chunks, rest) = self.0.as_chunks_mut::<LANES>();
         for lanes in chunks {
-            let y = of_lanes(simd, simd.load(lanes));
-            simd.store(y, lanes);
+            simd.store(of_lanes(simd, simd.load(lanes)), lanes);
         }
         let mut lanes = [0.0; LANES];
         lanes[..rest.len()].copy_from_slice(rest);

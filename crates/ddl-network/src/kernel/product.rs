@@ -233,7 +233,6 @@ pub(super) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut 
         for row in 0..rows.rows {
             sum += load(simd, rows.row(row), column);
         }
-        let total = load(simd, sums, column) + sum;
-        store(simd, total, sums, column);
+        store(simd, load(simd, sums, column) + sum, sums, column);
     }
 }

@@ -103,8 +103,7 @@ impl AttentionKernel {
                 task,
             });
         }
-        let work = self.work(frames, entries);
-        run_buffered(self.dispatch, jobs, work);
+        run_buffered(self.dispatch, jobs, self.work(frames, entries));
     }
 
     fn work(&self, frames: SceneFrames<'_>, entries: usize) -> usize {

@@ -70,8 +70,7 @@ impl SeenRows {
                 ];
                 neighbours.features.extend(features.map(|x| x as f32));
             }
-            let rows = (neighbours.features.len() - before) / NEIGHBOUR_FEATURES;
-            neighbours.counts.push(rows);
+            neighbours.counts.push((neighbours.features.len() - before) / NEIGHBOUR_FEATURES);
         }
         seen
     }

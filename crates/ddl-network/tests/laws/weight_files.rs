@@ -42,8 +42,7 @@ fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) 
             .iter()
             .map(|(name, kind, shape, bytes)| (name.as_str(), TensorView::new(*kind, shape.clone(), bytes).unwrap()))
     };
-    let header = origin().to_header(&tensors_digest(views()));
-    safetensors::serialize(views(), Some(header)).unwrap()
+    safetensors::serialize(views(), Some(origin().to_header(&tensors_digest(views())))).unwrap()
 }
 
 fn refuse(bytes: &[u8], expected: &str) {
@@ -77,8 +76,7 @@ fn weights_survive_the_file() {
     }
     let proposals = ProposalNetwork::new(ProposalConfig::default(), 1).unwrap();
     check(&proposals.copy_weights().unwrap());
-    let one = weights(Variant::Full, 1);
-    assert_ne!(one, weights(Variant::Full, 2));
+    assert_ne!(weights(Variant::Full, 1), weights(Variant::Full, 2));
 }
 
 #[test]

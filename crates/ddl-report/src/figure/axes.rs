@@ -99,8 +99,7 @@ impl Axes {
         let [[left, top], [right, bottom]] = self.frame();
         let across = [f64::midpoint(left, right), bottom + 40.0];
         drawing.text("middle", across, "x (m)");
-        let up = [left - 42.0, f64::midpoint(top, bottom)];
-        drawing.upward_text("middle", up, "y (m)");
+        drawing.upward_text("middle", [left - 42.0, f64::midpoint(top, bottom)], "y (m)");
     }
 }
 

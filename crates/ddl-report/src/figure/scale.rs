@@ -50,8 +50,7 @@ impl Scale {
                 .map(|value| (value, label(value, value)))
                 .collect();
         }
-        let step = round_step((self.high - self.low) / 4.0);
-        ticks(self.low, self.high, step).collect()
+        ticks(self.low, self.high, round_step((self.high - self.low) / 4.0)).collect()
     }
 }
 

@@ -35,8 +35,7 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, ReportError
     legend::draw_column(&mut drawing, [right + 20.0, top], &entries(window, forecast));
     drawing.within(axes.frame(), |drawing| {
         for disc in regions(forecast) {
-            let radius = axes.plan.scale * disc.radius;
-            drawing.circle("region", axes.plan.px(disc.centre), radius);
+            drawing.circle("region", axes.plan.px(disc.centre), axes.plan.scale * disc.radius);
         }
         for pedestrian in drawn {
             pedestrian::other_hypotheses(drawing, &axes.plan, pedestrian);

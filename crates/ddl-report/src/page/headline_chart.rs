@@ -77,8 +77,7 @@ impl Chart<'_> {
 /// The folds, then their mean if there are several.
 fn columns(line: &StandingLine) -> Vec<Option<[f64; 2]>> {
     let several = line.folds.len() > 1;
-    let mean = several.then_some(line.mean);
-    line.folds.iter().copied().chain(mean).collect()
+    line.folds.iter().copied().chain(several.then_some(line.mean)).collect()
 }
 
 fn wide(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {

@@ -48,6 +48,5 @@ fn a_window_without_future_has_no_truth() {
 fn strangers_are_refused() {
     let forecast = ConstantVelocity::LastStep.forecast(&window(2)).unwrap();
     let error = figure::scene(&window(1), &forecast).unwrap_err();
-    let expected = "the window holds 1 pedestrians, the forecast 2";
-    assert_eq!(error.to_string(), expected);
+    assert_eq!(error.to_string(), "the window holds 1 pedestrians, the forecast 2");
 }

@@ -30,8 +30,7 @@ fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (W
     }
     let weights = vec![1.0 / hypotheses as f64; pedestrians * hypotheses];
     let forecast = Forecast::new(pedestrians, hypotheses, positions, weights, goals.then_some(ends));
-    let window = Window::new("scene", 0, 10, ids, tracks).unwrap();
-    (window, forecast.unwrap())
+    (Window::new("scene", 0, 10, ids, tracks).unwrap(), forecast.unwrap())
 }
 
 fn moment(pedestrians: usize, hypotheses: usize, goals: bool) -> ForecastSnapshot {

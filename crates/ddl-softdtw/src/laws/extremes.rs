@@ -75,8 +75,7 @@ fn a_path_of_thousands_of_cells_along_one_row_and_one_column_is_not_lost() {
 #[test]
 fn bad_input_is_refused_by_name() {
     for gamma in [-1.0, f64::NAN, f64::INFINITY] {
-        let error = SoftDtw::new(gamma).unwrap_err();
-        assert!(matches!(error, SoftDtwError::InvalidGamma { .. }));
+        assert!(matches!(SoftDtw::new(gamma).unwrap_err(), SoftDtwError::InvalidGamma { .. }));
     }
     let dtw = dtw(1.0);
     let empty: &[[f64; 1]] = &[];

@@ -102,7 +102,6 @@ impl TorchNetwork {
             return Ok(None);
         }
         let weights = self.parameters.to_weights()?;
-        let kernels = Kernels::new(weights.layout(), weights.numbers());
-        Ok(Some(Arc::new(kernels)))
+        Ok(Some(Arc::new(Kernels::new(weights.layout(), weights.numbers()))))
     }
 }

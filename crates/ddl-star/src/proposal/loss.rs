@@ -42,8 +42,7 @@ pub(crate) fn winner_takes_all(proposals: &Proposals, future: &Tensor, weights: 
     let nearest = (sorted * share).sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>).mean(None::<Kind>);
     let winner = order.narrow(-1, 0, 1);
     let surprise = -proposals.logits.log_softmax(-1, None::<Kind>).gather(-1, &winner, false).mean(None::<Kind>);
-    let loss = (&nearest + surprise * weights.probability) * members;
-    (loss, nearest)
+    ((&nearest + surprise * weights.probability) * members, nearest)
 }
 
 #[cfg(test)]

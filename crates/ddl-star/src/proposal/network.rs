@@ -116,8 +116,7 @@ impl TorchProposals {
 
     /// The proposals from the observation only. Shapes: `views` `[M, B, ..]` -> `[M, B, K, ..]`.
     pub(crate) fn forward(&self, views: &Views) -> Proposals {
-        let readings = self.read(&self.layers.readout, &self.hidden_layer(views));
-        self.placed(readings, views)
+        self.placed(self.read(&self.layers.readout, &self.hidden_layer(views)), views)
     }
 
     /// The proposals of the memory branch; `None` without one. No gradient reaches the rest of the network. Shapes:
@@ -155,8 +154,7 @@ impl TorchProposals {
         let seen = &views.present * distance.lt(self.config.neighbour_range);
         let neighbours = &self.layers.neighbours;
         let context = self.attend(neighbours, &code, &features, &seen, self.config.heads);
-        let hidden = &self.layers.readout.hidden;
-        self.through(hidden, code, context, sum(&seen) * 0.1)
+        self.through(&self.layers.readout.hidden, code, context, sum(&seen) * 0.1)
     }
 
     /// Hidden layers, with residual connections between layers of equal width. Shapes: `code` `[M, B, width]`,

@@ -91,15 +91,13 @@ impl EvaluationVariant {
         let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
         if network.dynamics() && learned_on_plain_steps {
             let plain = VariantMotion::Shaped(StepRule::Euler);
-            let change = said("with plain Euler steps");
-            add(Protocol::Fair, GivenGoals::Own, plain, change);
+            add(Protocol::Fair, GivenGoals::Own, plain, said("with plain Euler steps"));
         }
         if network.uses_goal() {
             let change = said("on the way that its network shapes");
             add(Protocol::Single, GivenGoals::Central, stable, change);
             if model.goal_model().has_library_beside_network() {
-                let change = said("as packed");
-                add(Protocol::Fair, GivenGoals::WithoutLibrary, stable, change);
+                add(Protocol::Fair, GivenGoals::WithoutLibrary, stable, said("as packed"));
             }
             let mut with_memory = model.config().data.convention.folds_with_place_memory();
             if model.goal_model().memory().is_some() && with_memory.next().is_some() {

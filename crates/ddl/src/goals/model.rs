@@ -76,8 +76,7 @@ impl GoalModel {
                 enough_weights::require(&run.proposal(), recipe.network.min_weight_count())?;
                 let origin = config.goals_origin();
                 let read = |layout: &_| load_weights(layout, &origin, &run.proposal());
-                let network = device.proposing(&recipe.network, read)?;
-                Some(network)
+                Some(device.proposing(&recipe.network, read)?)
             }
         };
         Self::with_network(run, config, network)
@@ -247,10 +246,7 @@ impl GoalModel {
     pub(crate) fn goals_without_library(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         match self.proposal_network() {
             None => self.goals(windows),
-            Some(network) => {
-                let sets = self.representatives(network, None, windows)?;
-                Ok(self.within_reach(windows, sets))
-            }
+            Some(network) => Ok(self.within_reach(windows, self.representatives(network, None, windows)?)),
         }
     }
 

@@ -16,6 +16,7 @@ pub enum SessionMemory {
     Kept,
     /// In a file of one place, which one process at a time writes: every minute, and at the end. The memory in it is
     /// read at the start.
+    #[non_exhaustive]
     File {
         /// The path as given.
         path: PathBuf,

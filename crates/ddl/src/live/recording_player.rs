@@ -61,9 +61,9 @@ impl RecordingPlayer<'_> {
             let mut moment = ForecastSnapshot::under_way(model.name(), window, answer.forecast(), &seen)?;
             moment.frame = clock.number(moment.frame).nearest();
             moment.when = Some(clock.words(window.frames()[OBSERVED - 1]));
-            if answer.is_joint() {
+            if let Ok(futures) = answer.futures() {
                 moment.joint = true;
-                moment.groups = ddl_scene::groups(window);
+                moment.groups = futures.groups().to_vec();
             }
             Ok(moment)
         });

@@ -73,6 +73,8 @@ pub struct Session<M> {
     waiting: WaitingWindows,
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
     memory: SessionMemory,
+    /// Of scenes that have ended, until a frame is observed.
+    notes: Vec<Note>,
     idle_timeout: Duration,
 }
 
@@ -111,6 +113,7 @@ impl<M: Borrow<Ddl>> Session<M> {
             waiting: WaitingWindows::default(),
             regions: BTreeMap::new(),
             memory: SessionMemory::None,
+            notes: Vec::new(),
             idle_timeout: IDLE_TIMEOUT,
         })
     }
@@ -121,7 +124,11 @@ impl<M: Borrow<Ddl>> Session<M> {
     ///
     /// # Errors
     /// When the model has no memory branch, or the memory of a file another number of frames per step.
+    ///
+    /// # Panics
+    /// After the first frame.
     pub fn remembering(mut self, memory: SessionMemory) -> Result<Self, DdlError> {
+        assert!(self.scenes.is_empty(), "a session begins to remember before its first frame");
         self.memory = memory;
         if self.memory.is_of_one_place() {
             // Its faults show before the first frame.
@@ -181,9 +188,8 @@ impl<M: Borrow<Ddl>> Session<M> {
             self.scenes.insert(None, scene);
         }
         let Some(scene) = self.scenes.get_mut(&None) else { unreachable!("it was just begun") };
-        scene.tracks.name(names);
         let (model, request) = (self.model.borrow(), &self.request);
-        let answered = scene.push(frame, pedestrians, |window| {
+        let answered = scene.push(frame, pedestrians, names, |window| {
             model.forecast_plainly(std::slice::from_ref(window), request).map(|mut answers| answers.remove(0))
         })?;
         let (is_due, notes) = (scene.tracks.is_moment(), scene.notes(None));
@@ -208,7 +214,7 @@ impl<M: Borrow<Ddl>> Session<M> {
         let frame = if is_time { (MICROSECONDS * at).round() } else { at };
         // False for NaN.
         if !(frame.fract() == 0.0 && frame.abs() < FRAME_LIMIT as f64) {
-            return Err(DdlError::Moment(at));
+            return Err(DdlError::Moment { at });
         }
         self.push(frame as i64, pedestrians).map_err(|error| DdlError::At { at, is_time, error: error.into() })
     }
@@ -220,7 +226,7 @@ impl<M: Borrow<Ddl>> Session<M> {
     /// # Errors
     /// [`DdlError::Live`] for a frame that is out of order within its scene, a position that is not finite or a
     /// repeated pedestrian, or too many of them; [`DdlError::TooManyScenes`] and [`DdlError::TooManyWaiting`] beyond
-    /// the limits. After an error nothing has changed.
+    /// the limits. After an error the tracks are as they were; scenes that were idle have ended.
     pub fn observe(
         &mut self,
         scene: Option<&SceneName>,
@@ -231,33 +237,31 @@ impl<M: Borrow<Ddl>> Session<M> {
         let pedestrians: Vec<_> = pedestrians.into_iter().collect();
         self.waiting.ensure_room()?;
         self.ensure_room(pedestrians.len())?;
-        let (name, mut notes) = (scene.cloned(), Vec::new());
-        let mut begun = None;
+        let (name, mut begun) = (scene.cloned(), None);
         if !self.scenes.contains_key(&name) {
-            notes = self.end_idle();
-            begun = Some(self.begin_beside_others(scene, &mut notes)?);
+            self.end_idle();
+            begun = Some(self.begin_beside_others(scene)?);
         }
         let Some(watched) = begun.as_mut().or(self.scenes.get_mut(&name)) else { unreachable!("known or begun") };
-        watched.tracks.name(names);
+        let window = watched.push(frame, pedestrians, names, |_| Ok(()))?.map(|(window, ())| window);
         watched.heard = scene.map(|_| Instant::now());
-        let window = watched.push(frame, pedestrians, |_| Ok(()))?.map(|(window, ())| window);
         let is_due = watched.tracks.is_moment();
-        notes.extend(watched.notes(scene));
+        self.notes.extend(watched.notes(scene));
         if let Some(begun) = begun {
             self.scenes.insert(name.clone(), begun);
         }
         self.waiting.add(name, window, is_due);
-        Ok(notes)
+        Ok(std::mem::take(&mut self.notes))
     }
 
     /// Says that a scene begins again, as when a reader of many scenes had forgotten it: its tracks end, and scenes
     /// without a frame for long are forgotten, after their memories are written.
     pub fn begin_again(&mut self, scene: Option<&SceneName>) -> Vec<Note> {
-        let notes = self.end_idle();
+        self.end_idle();
         if scene.is_some() {
             self.clear(scene);
         }
-        notes
+        std::mem::take(&mut self.notes)
     }
 
     /// Forgets the tracks of a scene, as when its tracker restarts: any frame may follow. The memory of the place and
@@ -284,12 +288,24 @@ impl<M: Borrow<Ddl>> Session<M> {
     /// As [`Ddl::forecast`]; the windows are then not answered.
     pub fn answer(&mut self, windows: SceneWindows<'_>) -> Result<Vec<Answer>, DdlError> {
         let answers = self.model.borrow().forecast_plainly(windows.windows, &self.request)?;
+        Ok(self.adapt(windows, answers))
+    }
+
+    /// The answers of the model itself to windows, with regions and weights that follow their places if the session
+    /// asks for that: [`answer`](Self::answer) in two steps, between which others may use the session.
+    pub fn adapt(&mut self, windows: SceneWindows<'_>, answers: Vec<Answer>) -> Vec<Answer> {
         let answered = windows.windows.iter().zip(answers).enumerate();
-        Ok(answered.map(|(i, (window, answer))| self.adapted(windows.scene(i), window, answer)).collect())
+        answered.map(|(i, (window, answer))| self.adapted(windows.scene(i), window, answer)).collect()
+    }
+
+    /// Writes the memories for which a minute has passed. A full disk costs no forecast.
+    pub fn write_due(&mut self) -> Vec<Note> {
+        self.scenes.values_mut().filter_map(WatchedScene::write_due).collect()
     }
 
     fn adapted(&mut self, scene: Option<&SceneName>, window: &Window, answer: Answer) -> Answer {
-        if !self.request.adaptive_regions {
+        // A scene that has ended since learns no more.
+        if !self.request.adaptive_regions || (scene.is_some() && self.tracks(scene).is_none()) {
             return answer;
         }
         answer.adapted(self.regions.entry(scene.cloned()).or_default(), window)
@@ -322,17 +338,15 @@ impl<M: Borrow<Ddl>> Session<M> {
     }
 
     /// Forgets the scenes that have been without a frame for long, after their memories are written.
-    fn end_idle(&mut self) -> Vec<Note> {
+    fn end_idle(&mut self) {
         let is_idle = |_: &Option<SceneName>, scene: &mut WatchedScene| {
             scene.heard.is_some_and(|heard| heard.elapsed() >= self.idle_timeout)
         };
-        let mut notes = Vec::new();
         for (name, mut scene) in self.scenes.extract_if(.., is_idle) {
-            notes.extend(scene.close());
+            self.notes.extend(scene.close());
             self.regions.remove(&name);
             self.waiting.forget(name.as_ref());
         }
-        notes
     }
 
     fn ensure_room(&self, pedestrians: usize) -> Result<(), DdlError> {
@@ -344,18 +358,14 @@ impl<M: Borrow<Ddl>> Session<M> {
     }
 
     /// A named scene whose memory cannot be used begins without memory.
-    fn begin_beside_others(
-        &mut self,
-        scene: Option<&SceneName>,
-        notes: &mut Vec<Note>,
-    ) -> Result<WatchedScene, DdlError> {
+    fn begin_beside_others(&mut self, scene: Option<&SceneName>) -> Result<WatchedScene, DdlError> {
         if self.scenes.len() >= Self::MOST_SCENES {
             let minutes = self.idle_timeout.as_secs() / 60;
             return Err(DdlError::TooManyScenes { limit: Self::MOST_SCENES, minutes });
         }
         match (self.begin_scene(scene), scene) {
             (Err(error), Some(_)) => {
-                notes.push(Note::MemoryFailed(error.into()));
+                self.notes.push(Note::MemoryFailed(error.into()));
                 Ok(WatchedScene::new(self.unseen.clone()))
             }
             (begun, _) => begun,

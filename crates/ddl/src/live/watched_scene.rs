@@ -4,7 +4,7 @@ use crate::error::DdlError;
 use crate::live::memory_files::OpenMemory;
 use crate::model::ddl::Ddl;
 use crate::note::{MisfitNote, Note};
-use ddl_core::{PedestrianId, Position, Window};
+use ddl_core::{PedestrianId, PedestrianNames, Position, Window};
 use ddl_data::{LiveTracks, MisfitTreatment, SceneName};
 use ddl_memory::{MemoryError, MemoryFile, PlaceMemory, SceneMemory};
 use std::time::Instant;
@@ -16,8 +16,8 @@ pub(crate) struct WatchedScene {
     pub(crate) place: Option<PlaceMemory>,
     file: Option<MemoryFile>,
     is_refusal_told: bool,
-    /// When its last frame came; `None` for a place without a name, which is never forgotten. A browser has no such
-    /// clock.
+    /// When its last frame came; `None` until then, and for a place without a name, which is never forgotten. A
+    /// browser has no such clock.
     pub(crate) heard: Option<Instant>,
 }
 
@@ -54,9 +54,11 @@ impl WatchedScene {
         &mut self,
         frame: i64,
         pedestrians: Vec<(PedestrianId, Position)>,
+        names: &PedestrianNames,
         answer: impl FnOnce(&Window) -> Result<T, ddl_core::ForecastError>,
     ) -> Result<Option<(Window, T)>, DdlError> {
-        let tracks = self.tracks.after(frame, pedestrians.iter().copied())?;
+        let mut tracks = self.tracks.after(frame, pedestrians.iter().copied())?;
+        tracks.name(names);
         let answered = match tracks.window() {
             None => None,
             Some(window) => {
@@ -81,8 +83,7 @@ impl WatchedScene {
         Ok(answered)
     }
 
-    /// What there is to say of the last frame. Once a minute the memory is written: the frame has been observed, so a
-    /// full disk costs no forecast.
+    /// What there is to say of the last frame, after which the memory is written if it is due.
     pub(crate) fn notes(&mut self, scene: Option<&SceneName>) -> Vec<Note> {
         let tracks = &self.tracks;
         let misfits = MisfitNote::all(tracks.misfits(), tracks.names(), tracks.clock());
@@ -98,12 +99,14 @@ impl WatchedScene {
         {
             notes.push(Note::MemoryRefused { path: file.path().to_owned(), refusal });
         }
-        if file.is_due()
-            && let Err(error) = file.write(place)
-        {
-            notes.push(Note::MemoryUnwritten(DdlError::from(error).into()));
-        }
+        notes.extend(self.write_due());
         notes
+    }
+
+    /// Writes the memory, if a minute has passed.
+    pub(crate) fn write_due(&mut self) -> Option<Note> {
+        let (place, file) = (self.place.as_ref()?, self.file.as_mut().filter(|file| file.is_due())?);
+        Some(Note::MemoryUnwritten(DdlError::from(file.write(place).err()?).into()))
     }
 
     /// The tracker restarts: any frame may come next.
@@ -162,7 +165,9 @@ pub(crate) mod tests {
             vec![(PedestrianId(1), [along, 30.0 * wrong]), (PedestrianId(2), [along, 2.0 + aside])]
         };
         let memory_of = |watch: &WatchedScene| watch.place.as_ref().unwrap().memory().clone();
-        let push = |watch: &mut WatchedScene, frame| watch.push(frame, rows(frame), |_| Ok(())).unwrap();
+        let push = |watch: &mut WatchedScene, frame| {
+            watch.push(frame, rows(frame), &PedestrianNames::default(), |_| Ok(())).unwrap()
+        };
         for frame in 0..125 {
             push(&mut watch, frame);
         }
@@ -178,7 +183,8 @@ pub(crate) mod tests {
         // An error changes nothing. What a window recalls was observed before its last frame.
         let before = (watch.tracks.clone(), memory_of(&watch));
         let failure = ddl_core::ForecastError::model("none", DdlError::Interrupted);
-        let failed: Result<Option<(Window, ())>, _> = watch.push(125, rows(125), |_| Err(failure));
+        let failed: Result<Option<(Window, ())>, _> =
+            watch.push(125, rows(125), &PedestrianNames::default(), |_| Err(failure));
         assert!(failed.is_err() && (watch.tracks.clone(), memory_of(&watch)) == before);
         let (window, ()) = push(&mut watch, 125).unwrap();
         let count = model.goal_model().recalled_per_pedestrian().unwrap();

@@ -112,7 +112,9 @@ impl Ddl {
         let has_flow = variant.dynamics() || (request.motions == Motions::One && variant.uses_goal());
         match request.certificates {
             true if !has_flow => Err(certified::no_flow(variant)),
-            true if request.plan().is_some() => Err(certified::failed(CertificateError::GivenPlan)),
+            true if request.plan().is_some_and(|given| given.ego.is_some()) => {
+                Err(certified::failed(CertificateError::GivenPlan))
+            }
             _ => Ok(()),
         }
     }
@@ -155,8 +157,7 @@ impl Ddl {
         sets: Vec<Vec<GoalSet>>,
     ) -> Result<Vec<Forecast>, ForecastError> {
         if !self.config().star.variant.uses_goal() {
-            let seed = self.config().training.seed;
-            return shaped::without_goals(&*self.network, seed, windows);
+            return shaped::without_goals(&*self.network, self.config().training.seed, windows);
         }
         self.neutral(windows, sets).map(Walked::forecast).collect()
     }
@@ -210,7 +211,6 @@ impl Forecaster for Ddl {
     }
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        let goals = self.goals.goals(windows)?;
-        self.forecast_towards(windows, goals, StepRule::Bounded)
+        self.forecast_towards(windows, self.goals.goals(windows)?, StepRule::Bounded)
     }
 }

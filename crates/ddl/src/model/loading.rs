@@ -160,7 +160,6 @@ mod tests {
     #[test]
     fn the_default_has_seen_the_most_pedestrians() {
         let seen = |model: &BuiltinModel| ModelSource::Builtin(*model).config().unwrap().data.pedestrians;
-        let most = BuiltinModel::ALL.into_iter().max_by_key(seen);
-        assert_eq!(most, Some(BuiltinModel::default()));
+        assert_eq!(BuiltinModel::ALL.into_iter().max_by_key(seen), Some(BuiltinModel::default()));
     }
 }

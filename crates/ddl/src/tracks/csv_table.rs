@@ -50,7 +50,7 @@ const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 /// requested region.
 ///
 /// # Errors
-/// None that is known: every field has a form in csv.
+/// A field that has no form in csv, which is a defect.
 pub fn csv_table(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> Result<String, csv::Error> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     if headed {
@@ -107,8 +107,7 @@ pub fn csv_table(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> Resul
         }
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
-    // Fields are text.
-    Ok(String::from_utf8_lossy(&bytes).into_owned())
+    String::from_utf8(bytes).map_err(|error| std::io::Error::other(error).into())
 }
 
 /// A coordinate in tables, rounded to 0.1 mm; or a time, rounded to 0.1 ms.

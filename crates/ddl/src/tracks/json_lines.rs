@@ -5,6 +5,7 @@ use crate::tracks::moment::Moment;
 use ddl_core::{Disc, Forecast, HORIZON, PedestrianName};
 use ddl_data::{FrameNumber, SceneName};
 use ddl_dynamics::{LyapunovCertificate, Violation};
+use ddl_scene::Futures;
 use serde::Serialize;
 
 /// What is known of a moment.
@@ -186,12 +187,12 @@ fn scene_line<'a>(moment: &Moment<'a>, regions: &[f64]) -> SceneLine<'a> {
         weight: forecast.weight(0, k),
         paths: pedestrians.clone().map(|i| PathLine::of(moment, i, k)).collect(),
     });
-    let groups = ddl_scene::groups(moment.window).into_iter();
+    let groups = moment.answer.futures().map_or(&[][..], Futures::groups);
     SceneLine {
         moment: MomentHead::of(moment),
         frames: moment.frames(),
         futures: futures.collect(),
-        groups: groups.map(|group| group.into_iter().map(|i| moment.window.name(i)).collect()).collect(),
+        groups: groups.iter().map(|group| group.iter().map(|&i| moment.window.name(i)).collect()).collect(),
         pedestrians: pedestrians.map(|i| ObservedPedestrian::of(moment, i, regions)).collect(),
     }
 }

@@ -47,8 +47,7 @@ pub(crate) fn train(
         let windows = match &network.memory {
             Some(memory) => {
                 let nothing = |_: &str| Vec::new();
-                let count = memory.remembered;
-                remembering(recordings, &windows, nothing, Some(playback), count)?
+                remembering(recordings, &windows, nothing, Some(playback), memory.remembered)?
             }
             None => windows,
         };

@@ -326,6 +326,5 @@ fn rules(convention: Convention) -> Vec<WindowRule> {
         Convention::SocialGan => Some(WindowRule::SocialGan { min_pedestrians: 1 }),
         Convention::Simulated | Convention::Own => None,
     };
-    let headline = convention.headline_rule();
-    [headline].into_iter().chain(beside).collect()
+    [convention.headline_rule()].into_iter().chain(beside).collect()
 }

@@ -26,7 +26,7 @@ pub(super) struct MemoryOfFile {
 #[derive(Debug, Args)]
 pub(super) struct MemoryPicture {
     /// Draw the memory of a place as SVG: where many pedestrians walk, appear and disappear
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::AnyPath)]
     svg: Option<OutputFile>,
 }
 

@@ -35,7 +35,7 @@ pub(crate) struct OtherProgram {
     #[arg(long, requires = "forecasts")]
     intersection: bool,
     /// Folder for the report: report.html, report.md, report.json, moments.json and figures
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", value_hint = clap::ValueHint::AnyPath)]
     pub(crate) out: Option<OutputPlace>,
 }
 

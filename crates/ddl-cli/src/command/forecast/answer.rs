@@ -17,8 +17,7 @@ pub(crate) fn answer(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
     stream.machine.prepare_for_little()?;
     if stream.memory.is_some() && !stream.tracks.are_live() {
         bail!(
-            "--memory is for live tracks from standard input, as in `ddl forecast - --memory FILE`: give \
-             `-` for the file"
+            "--memory is for live tracks from standard input (`ddl forecast - --memory FILE`): give `-` for the file"
         );
     }
     if stream.latest && !stream.tracks.are_live() {
@@ -38,6 +37,10 @@ pub(crate) fn answer(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
     let (mut lines, mut bytes) = (0, 0);
     let interrupt = Interrupt::catch()?;
     let mut session = Session::new(&model, LiveTracks::new(), Request::default())?;
+    let mut ask = |windows: SceneWindows<'_>, request: Request| {
+        session.ask(request)?;
+        Ok(session.answer(windows)?)
+    };
     let parts = Window::parts(&observed.windows, command.at_once()).map(|windows| {
         // No unfinished file is left.
         if interrupt.flow().is_break() {
@@ -53,14 +56,14 @@ pub(crate) fn answer(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
             }
             for windows in parts {
                 let add = |moments: &[Moment<'_>], _: &mut StreamState| command.log(moments, &mut log);
-                answers_of(command, &mut session, windows?, observed.clock, &mut state, add)?;
+                answers_of(command, windows?, observed.clock, &mut state, &mut ask, add)?;
             }
             Ok(log.finish()?)
         })?;
     } else {
         let texts = parts.map(|windows| {
             let make = |moments: &[Moment<'_>], state: &mut StreamState| command.text(moments, state);
-            let text = answers_of(command, &mut session, windows?, observed.clock, &mut state, make)?;
+            let text = answers_of(command, windows?, observed.clock, &mut state, &mut ask, make)?;
             bytes += text.len();
             lines += text.lines().count();
             Ok(text)

@@ -287,7 +287,7 @@ impl Stream<'_> {
         }
         for note in notes {
             match note {
-                Note::Misfits { .. } => {}
+                Note::Misfits { .. } | Note::MemoryUnsaved { is_refusal_told: true, .. } => {}
                 // The scenes go on.
                 Note::MemoryFailed(error) => self.left_out.wrong(&error.into()),
                 note => tell_note(&note),
@@ -303,6 +303,7 @@ impl Stream<'_> {
             let Some(session) = &mut watching.session else {
                 return Ok(());
             };
+            session.write_due().iter().for_each(tell_note);
             self.left_out.dropped(session.waiting());
             session.next_batch(SceneBatch::PEDESTRIANS)
         };
@@ -328,12 +329,22 @@ impl Stream<'_> {
 
     fn text(&mut self, windows: SceneWindows<'_>) -> anyhow::Result<String> {
         let clock = self.clock.unwrap_or(Clock::STEPS);
-        let command = self.command;
+        let (command, model, watching) = (self.command, self.model, self.watching);
+        // The session is free while the model works: after Ctrl-C it writes its memories.
+        let answer = |windows: SceneWindows<'_>, request: Request| {
+            let mut plain = request.clone();
+            plain.adaptive_regions = false;
+            let answers = model.forecast(windows.windows, &plain)?;
+            match &mut lock(watching).session {
+                Some(session) => {
+                    session.ask(request)?;
+                    Ok(session.adapt(windows, answers))
+                }
+                None => Ok(answers),
+            }
+        };
         let text = |moments: &[Moment<'_>], state: &mut StreamState| command.text(moments, state);
-        match &mut lock(self.watching).session {
-            Some(session) => answers_of(command, session, windows, clock, &mut self.state, text),
-            None => Ok(String::new()),
-        }
+        answers_of(command, windows, clock, &mut self.state, answer, text)
     }
 
     /// Leaves out a failed forecast of a named scene. Before the first forecast it is an error, because the arguments

@@ -9,9 +9,8 @@ use crate::tracks::TrackOptions;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
-use ddl::{Ddl, Moment, Request, SceneWindows, Session};
+use ddl::{Answer, Ddl, Moment, Request, SceneWindows};
 use ddl_mcap::ForecastLog;
-use std::borrow::Borrow;
 use std::fs::File;
 use std::io::IsTerminal as _;
 
@@ -30,7 +29,7 @@ pub(crate) struct StreamOptions {
     #[command(flatten)]
     pub(super) tracks: TrackOptions,
     /// File to write [default: standard output, also as `-`]; forecasts also as .mcap, for Foxglove and ROS 2
-    #[arg(long, short)]
+    #[arg(long, short, value_hint = clap::ValueHint::AnyPath)]
     pub(crate) output: Option<OutputFile>,
     /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
     /// missing, written every minute and at the end
@@ -38,7 +37,7 @@ pub(crate) struct StreamOptions {
     /// Use one file for each camera; for a stream of several scenes an existing folder, which gets a file SCENE.memory
     /// for each. The first 30 pedestrians show whether the memory is of this place; if it is not, the file is left
     /// unchanged and forecasts continue without it. `ddl data FILE` summarises the file.
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_hint = clap::ValueHint::AnyPath)]
     pub(super) memory: Option<MemoryPath>,
     /// With `-`: if frames arrive faster than they are forecast, forecast only the latest of each scene, and report how
     /// many were dropped
@@ -82,16 +81,15 @@ pub(crate) trait AnsweringCommand {
 }
 
 /// What a command makes of the answers to these windows.
-pub(super) fn answers_of<T, M: Borrow<Ddl>>(
+pub(super) fn answers_of<T>(
     command: &dyn AnsweringCommand,
-    session: &mut Session<M>,
     windows: SceneWindows<'_>,
     clock: Clock,
     state: &mut StreamState,
+    answer: impl FnOnce(SceneWindows<'_>, Request) -> anyhow::Result<Vec<Answer>>,
     make: impl FnOnce(&[Moment<'_>], &mut StreamState) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
-    session.ask(command.request(windows.windows, state)?)?;
-    let answers = session.answer(windows)?;
+    let answers = answer(windows, command.request(windows.windows, state)?)?;
     let moments = windows.moments(&answers, clock);
     state.warn_of_violation(&moments);
     state.unfamiliar.add(&moments);

@@ -58,8 +58,7 @@ impl Four {
 pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> Floats<S> {
     // Lane 4 i + k holds a part of the sum of row k.
     let [a, b, c, d] = simd.transpose(sums);
-    let parts = a + b + (c + d);
-    simd.sum_of_quarters(parts) * (1.0 / width as f32)
+    simd.sum_of_quarters(a + b + (c + d)) * (1.0 / width as f32)
 }
 
 /// Decides which numbers of t are dropped: a function of only (seed, row, column), with 24 random bits.

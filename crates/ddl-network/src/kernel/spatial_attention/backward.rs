@@ -57,8 +57,7 @@ impl Buffered<'_, SceneBackward<'_>> {
         for (two, gradient) in query_gradients.chunks_mut(2 * row).zip(&buffers.query_gradients) {
             let (first, second) = two.split_at_mut(row);
             let second = (!second.is_empty()).then_some(second);
-            let gradient = simd.scaled(simd.read(gradient), scale);
-            heads::store(simd, gradient, group, first, second);
+            heads::store(simd, simd.scaled(simd.read(gradient), scale), group, first, second);
         }
     }
 
@@ -109,8 +108,7 @@ fn weigh<S: Simd, const DROP: bool>(simd: S, buffers: &mut SceneBuffers, task: &
             Some(decisions) if DROP => {
                 let factors = decisions.factors(&buffers.bits[two], task.scene.first + key);
                 let factors = simd.load(&factors.0);
-                let change = factors * taken - inner;
-                (power * factors, change)
+                (power * factors, factors * taken - inner)
             }
             _ => (power, taken - inner),
         };
@@ -132,8 +130,7 @@ fn spread<S: Simd>(simd: S, buffers: &mut SceneBuffers, key: usize) -> (Vectors<
         let (query, gradient) = (simd.read(query), simd.read(gradient));
         of_key = simd.accumulate(of_key, score_gradient, query);
         of_value = simd.accumulate(of_value, simd.load(&weight.0), gradient);
-        let sum = simd.accumulate(simd.read(of_query), score_gradient, key);
-        simd.write(sum, of_query);
+        simd.write(simd.accumulate(simd.read(of_query), score_gradient, key), of_query);
     }
     (of_key, of_value)
 }

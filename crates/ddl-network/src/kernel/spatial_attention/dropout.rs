@@ -28,8 +28,7 @@ impl WeightDecisions {
     /// The factor of a weight: 0 or 1 / (1 - p).
     #[cfg(test)]
     pub(super) fn factor(&self, entry: usize, query: usize, key: usize, head: usize) -> f32 {
-        let query = self.query(entry, query);
-        self.decide(hash(query, key as u32, head as u32))
+        self.decide(hash(self.query(entry, query), key as u32, head as u32))
     }
 
     pub(super) fn query(&self, entry: usize, query: usize) -> RowKey {

@@ -150,8 +150,7 @@ impl SceneBuffers {
         if let Some(decisions) = task.decisions {
             for first in asking.step_by(2) {
                 let query = |pedestrian| decisions.query(task.entry, task.scene.first + pedestrian);
-                let two = [query(first), query(first + 1)];
-                self.bits.push(LaneBits::new(two, group * GROUP));
+                self.bits.push(LaneBits::new([query(first), query(first + 1)], group * GROUP));
             }
         }
     }
