@@ -143,7 +143,7 @@ slow.memory => slow.memory: the memory was made at 2.5 frames per second
 damaged.memory => damaged.memory is not a readable scene memory
 tracks.csv => tracks.csv is not a readable scene memory
 folder => folder is a folder, and the frames name no scenes
-nowhere/hall.memory => nowhere/hall.memory: cannot write this file
+nowhere/hall.memory => cannot write nowhere/hall.memory
 ";
     for case in cases.trim().lines() {
         let (file, words) = case.split_once(" => ").unwrap();

@@ -136,9 +136,10 @@ fn standing_inputs(matches: &ArgMatches) -> impl Iterator<Item = NamedPath> {
 /// The input that writing to `output` would replace.
 fn lost(output: &Path, NamedPath { path: input, purpose, .. }: &NamedPath) -> Option<PathBuf> {
     let (there, here) = (place(output)?, place(input)?);
+    let ends = |path: &Path, kinds: &[&str]| kinds.iter().any(|&kind| path.extension().is_some_and(|it| it == kind));
     let replaced = if output.is_dir() {
-        // Recordings have other names, and may lie in the folder of the results.
-        here.parent() == Some(&*there) && is_written(&here)
+        // Recordings have other names, and may lie in the folder of the results. Grids are named by their frames.
+        here.parent() == Some(&*there) && (is_written(&here) || ends(&here, &["npy", "pgm", "yaml"]))
     } else if output.is_file() {
         let is_read = if *purpose == Use::Model {
             // A packed model may be kept beside the files of its run.
@@ -151,8 +152,9 @@ fn lost(output: &Path, NamedPath { path: input, purpose, .. }: &NamedPath) -> Op
         };
         there == here || (is_read && there.starts_with(&here)) || is_same_file(output, input)
     } else {
-        // Nothing is there yet, but both would be written.
-        *purpose == Use::Memory && there == here
+        // Nothing is there yet, but both would be written: the memory, or one of a scene in its folder.
+        let of_scene = there.parent() == Some(&*here) && ends(&there, &["memory", "lock"]);
+        *purpose == Use::Memory && (there == here || of_scene)
     };
     // Not `/dev/stdin`.
     let is_named = input.is_file() && output.is_dir();
