@@ -195,7 +195,8 @@ mod tests {
     #[test]
     fn the_smallest_spare_that_is_large_enough_is_taken() {
         drop([300, 100, 200].map(Buffer::any));
-        let lengths = [150, 250, 50].map(Buffer::any).each_ref().map(|buffer| buffer.numbers.len() - LANES);
+        let again = [150, 250, 50].map(Buffer::any);
+        let lengths = again.each_ref().map(|buffer| buffer.numbers.len() - LANES);
         assert_eq!(lengths, [200, 300, 100]);
         assert_eq!(Buffer::any(60).numbers.len() - LANES, 60);
     }
