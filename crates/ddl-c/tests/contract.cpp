@@ -142,7 +142,7 @@ void wrong_input_is_told(const ddl::Model& model) {
         REQUIRE(has(error_of([&] { ddl::forecast(model, meeting(), forecast, ddl::joint(plan, 77)); }), words));
     ddl::LiveOptions options;
     options.max_age = 3.0;
-    REQUIRE(has(error_of([&] { ddl::Live(model, options); }), "max_age is 3"));
+    REQUIRE(has(error_of([&] { ddl::Live(model, options); }), "`max_age` is 3"));
     options = {};
     options.rate = -1.0;
     REQUIRE(has(error_of([&] { ddl::Live(model, options); }), "rate is -1"));
