@@ -1,4 +1,4 @@
-//! The settings that messages ask for, in the words of whoever reads them.
+//! The settings that a message asks for, named as the program or the language of the user spells them.
 
 use std::fmt::{Display, Formatter, Result};
 use std::sync::{PoisonError, RwLock};

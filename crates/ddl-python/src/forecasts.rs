@@ -60,8 +60,9 @@ pub(crate) fn parts<'py>(
     dict.set_item("certified", certified.transpose()?)?;
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
     spread_and_regions(py, rows, forecast, empty, &dict)?;
-    let nobody = || empty.joint.map(FuturesHandle::of_nobody);
-    dict.set_item("futures", answer.map_or_else(nobody, |answer| FuturesHandle::of_rows(answer, rows)))?;
+    let without_pedestrians = || empty.joint.map(FuturesHandle::without_pedestrians);
+    let futures = answer.map_or_else(without_pedestrians, |answer| FuturesHandle::of_rows(answer, rows));
+    dict.set_item("futures", futures)?;
     let has_evidence = answer.map_or(empty.certificates, |answer| !answer.certificates().is_empty());
     let evidence = has_evidence.then(|| certificates(py, answer, rows, k));
     dict.set_item("certificates", evidence.transpose()?)?;

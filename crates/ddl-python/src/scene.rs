@@ -43,7 +43,7 @@ impl FuturesHandle {
         Some(Self { futures: some, is_given: futures.plan().is_some() })
     }
 
-    pub(crate) fn of_nobody(is_given: bool) -> Self {
+    pub(crate) fn without_pedestrians(is_given: bool) -> Self {
         Self { futures: None, is_given }
     }
 }
@@ -91,8 +91,8 @@ impl FuturesHandle {
         let plans = plans_of(&plans)?;
         let count = plans.len();
         let Some(futures) = self.futures.clone() else {
-            let nobody = array(py, Vec::<f64>::new(), [count, 0])?;
-            return Ok([array(py, vec![f64::INFINITY; count], [count])?, nobody]);
+            let no_pedestrians = array(py, Vec::<f64>::new(), [count, 0])?;
+            return Ok([array(py, vec![f64::INFINITY; count], [count])?, no_pedestrians]);
         };
         let people = futures.pedestrians();
         let clearances = run(py, move |_| futures.clearances(&plans))?.map_err(of_any)?;

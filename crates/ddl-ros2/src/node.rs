@@ -172,7 +172,7 @@ impl Forecasting<'_> {
             }
         }
         let joint = self.options.joint;
-        let nobody = Forecasts { header, time_step: TIME_STEP, joint, pedestrians: Vec::new() };
-        publish(&outputs.forecasts, nobody)
+        let empty = Forecasts { header, time_step: TIME_STEP, joint, pedestrians: Vec::new() };
+        publish(&outputs.forecasts, empty)
     }
 }

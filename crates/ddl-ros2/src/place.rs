@@ -82,7 +82,7 @@ impl WatchedPlace {
     }
 
     /// Forecasts the newest frame; earlier ones that were not forecast are skipped. `None` without a new frame; no
-    /// answer where nobody is observed well enough.
+    /// answer if no pedestrian has enough observed rows.
     pub(crate) fn forecast(&mut self) -> anyhow::Result<Option<FrameForecast>> {
         let Some(header) = self.moment.take() else {
             return Ok(None);
