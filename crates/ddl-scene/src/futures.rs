@@ -2,6 +2,8 @@
 
 use crate::error::SceneError;
 use crate::groups::groups;
+use crate::mixture::JointScene;
+use crate::parts::ScenePart;
 use crate::plan::Plan;
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, TIME_STEP, Window, between};
 use serde::{Deserialize, Serialize};
@@ -9,25 +11,63 @@ use serde::{Deserialize, Serialize};
 /// Two pedestrians have the same weight of a future if the weights differ by at most this much.
 const EQUAL_WEIGHTS: f64 = 1e-9;
 
-/// K weighted futures of a scene of N pedestrians: in future k every pedestrian follows its hypothesis k.
+/// A scene of N pedestrians as a product of independent [parts](ScenePart), and K weighted futures drawn from it: in
+/// future k every pedestrian follows its hypothesis k of [`forecast`](Self::forecast).
 ///
-/// Around its path a pedestrian is distributed as the [spread](ddl_core::Spread) of the forecast states.
+/// Risk and occupancy are computed from the hypotheses of each pedestrian and the samples of its part, not from the K
+/// futures. Around its path a pedestrian is distributed as the [spread](ddl_core::Spread) of the forecast states.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Futures {
     present: Vec<Position>,
     /// `[N]`: the scale at the moment itself, metres.
     deviations: Vec<f64>,
     groups: Vec<Vec<usize>>,
+    parts: Vec<ScenePart>,
+    /// What each pedestrian may do; `None` where these are the futures themselves.
+    hypotheses: Option<Forecast>,
     forecast: Forecast,
     plan: Option<Plan>,
 }
 
 impl Futures {
-    /// The futures of a joint forecast of this window, whose pedestrians respond to a plan if there is one.
+    /// The futures of a joint forecast of this window, which are all that is known of the scene. Its pedestrians respond
+    /// to a plan if there is one.
     ///
     /// # Errors
-    /// The forecast has another number of pedestrians; the weight of a hypothesis differs between pedestrians.
+    /// The forecast has another number of pedestrians, or more than 255 hypotheses; the weight of a hypothesis differs
+    /// between pedestrians.
     pub fn new(window: &Window, forecast: Forecast, plan: Option<Plan>) -> Result<Self, SceneError> {
+        if forecast.hypotheses() > JointScene::MOST_HYPOTHESES {
+            let (found, most) = (forecast.hypotheses(), JointScene::MOST_HYPOTHESES);
+            return Err(SceneError::Hypotheses { found, most });
+        }
+        let weights = (0..forecast.hypotheses()).map(|k| forecast.weight(0, k)).collect();
+        let pedestrians = (0..forecast.pedestrians()).collect();
+        let parts = vec![ScenePart::together(pedestrians, weights)];
+        Self::drawn(window, parts, None, forecast, plan)
+    }
+
+    /// The scene of these parts, whose pedestrians have these hypotheses, and futures drawn from it.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn of_parts(
+        window: &Window,
+        parts: Vec<ScenePart>,
+        hypotheses: Forecast,
+        forecast: Forecast,
+        plan: Option<Plan>,
+    ) -> Result<Self, SceneError> {
+        Self::drawn(window, parts, Some(hypotheses), forecast, plan)
+    }
+
+    fn drawn(
+        window: &Window,
+        parts: Vec<ScenePart>,
+        hypotheses: Option<Forecast>,
+        forecast: Forecast,
+        plan: Option<Plan>,
+    ) -> Result<Self, SceneError> {
         if window.len() != forecast.pedestrians() {
             return Err(SceneError::Pedestrians { window: window.len(), forecast: forecast.pedestrians() });
         }
@@ -41,7 +81,7 @@ impl Futures {
         }
         let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
         let deviations = (0..window.len()).map(|i| window.quality(i).deviation).collect();
-        Ok(Self { present, deviations, groups: groups(window), forecast, plan })
+        Ok(Self { present, deviations, groups: groups(window), parts, hypotheses, forecast, plan })
     }
 
     /// [Groups](crate::groups) of pedestrians who walk together, as indices.
@@ -54,6 +94,16 @@ impl Futures {
         &self.forecast
     }
 
+    /// The independent parts of the scene: their samples choose among the [hypotheses](Self::hypotheses).
+    pub fn parts(&self) -> &[ScenePart] {
+        &self.parts
+    }
+
+    /// What each pedestrian may do.
+    pub fn hypotheses(&self) -> &Forecast {
+        self.hypotheses.as_ref().unwrap_or(&self.forecast)
+    }
+
     /// The futures of the given pedestrians, at least one, in the given order; an index out of range panics. The others
     /// have shaped them, but count in no answer.
     #[must_use]
@@ -64,6 +114,8 @@ impl Futures {
             present: pedestrians.iter().map(|&i| self.present[i]).collect(),
             deviations: pedestrians.iter().map(|&i| self.deviations[i]).collect(),
             groups: groups.filter(|group| group.len() > 1).collect(),
+            parts: self.parts.iter().filter_map(|part| part.renumbered(|i| place(&i))).collect(),
+            hypotheses: self.hypotheses.as_ref().map(|hypotheses| hypotheses.of_pedestrians(pedestrians)),
             forecast: self.forecast.of_pedestrians(pedestrians),
             plan: self.plan.clone(),
         }
@@ -84,25 +136,15 @@ impl Futures {
         self.present.len()
     }
 
-    /// Number of futures, K.
-    pub fn count(&self) -> usize {
-        self.forecast.hypotheses()
-    }
-
-    /// The weight of future `k`; the weights sum to 1.
-    pub fn weight(&self, k: usize) -> f64 {
-        self.forecast.weight(0, k)
-    }
-
     /// The last observed position of pedestrian `i`, metres.
     pub fn present(&self, i: usize) -> Position {
         self.present[i]
     }
 
-    /// The position of pedestrian `i` in future `k`, `time` seconds after the moment, metres: on straight lines between
+    /// The position of pedestrian `i` on its hypothesis `k`, `time` seconds after the moment, metres: on straight lines between
     /// the steps. Before the moment it is the present position, after 4.8 s the last one.
     pub fn position(&self, i: usize, k: usize, time: f64) -> Position {
-        let path = self.forecast.hypothesis(i, k);
+        let path = self.hypotheses().hypothesis(i, k);
         let (step, share) = step_of(time);
         let from = if step == 0 { self.present[i] } else { path[step - 1] };
         between(from, path[step.min(HORIZON - 1)], share)
@@ -121,7 +163,7 @@ impl Futures {
     pub(crate) fn scale_at(&self, i: usize, step: usize) -> Option<f64> {
         match step {
             0 => Some(self.deviations[i]),
-            _ => self.forecast.scale(i, step - 1),
+            _ => self.hypotheses().scale(i, step - 1),
         }
     }
 }

@@ -30,16 +30,26 @@ pub fn groups(window: &Window) -> Vec<Vec<usize>> {
         for j in index.nearest_others(i, place, MOST_NEIGHBOURS) {
             let [apart, velocities] = closeness(window.observed(i), window.observed(j));
             if apart < CLOSE && velocities < ALIKE {
-                let (a, b) = (first_of(&mut links, i), first_of(&mut links, j));
-                links[a.max(b)] = a.min(b);
+                link(&mut links, i, j);
             }
         }
     }
-    let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-    for i in 0..window.len() {
-        groups.entry(first_of(&mut links, i)).or_default().push(i);
+    linked(&mut links).into_values().filter(|members| members.len() > 1).collect()
+}
+
+/// Links two members, and all who are linked to them; at first each is linked to itself.
+pub(crate) fn link(links: &mut [usize], i: usize, j: usize) {
+    let (a, b) = (first_of(links, i), first_of(links, j));
+    links[a.max(b)] = a.min(b);
+}
+
+/// Who is linked, by the first of them, in ascending order.
+pub(crate) fn linked(links: &mut [usize]) -> BTreeMap<usize, Vec<usize>> {
+    let mut linked: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+    for i in 0..links.len() {
+        linked.entry(first_of(links, i)).or_default().push(i);
     }
-    groups.into_values().filter(|members| members.len() > 1).collect()
+    linked
 }
 
 /// The first member of the group of pedestrian `i`; every link leads to an earlier member, and is shortened on the way.

@@ -3,6 +3,7 @@
 
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
 use std::array;
+use std::cmp::Ordering;
 
 /// `[axis][t]` relative to the present position of the pedestrian, metres.
 pub(crate) type HypothesisPath = [[f32; HORIZON + 1]; 2];
@@ -53,6 +54,12 @@ impl Hypotheses {
             }
         }
         Self { present, weights, paths, reach, radius: 0.0 }
+    }
+
+    /// An order that depends on what they may do alone, by distances and weights, which a turned scene has too.
+    pub(crate) fn compare(&self, other: &Self) -> Ordering {
+        let weights = || self.weights.iter().zip(&other.weights).map(|(a, b)| a.total_cmp(b));
+        self.reach.total_cmp(&other.reach).then_with(|| weights().find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
     }
 
     /// Number of hypotheses, K.

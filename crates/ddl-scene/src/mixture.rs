@@ -1,15 +1,17 @@
 //! From the hypotheses of the pedestrians of a scene to K joint futures, each a mixture of hypotheses.
 
 use crate::energy::Energy;
+use crate::groups::{link, linked};
 use crate::hypotheses::Hypotheses;
 use crate::keeping_apart::keep_apart;
 use crate::pairs::{Pair, pairs_of};
+use crate::parts::ScenePart;
 use crate::plan::Plan;
 use crate::{quantisation, sampling};
 use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianName, Position, Spread, TIME_STEP, Window};
 
 /// Samples of a scene.
-const SAMPLES: usize = 300;
+const SAMPLES: usize = 320;
 
 /// K joint futures of N pedestrians with H hypotheses: in future k pedestrian i follows a mixture of its hypotheses.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,29 +23,6 @@ pub struct JointMixture {
 }
 
 impl JointMixture {
-    /// The most hypotheses of a pedestrian.
-    pub const MOST_HYPOTHESES: usize = 255;
-
-    /// As many joint futures of this window as its forecast has hypotheses. Who follows the plan, if there is one, is
-    /// somebody else, or the pedestrian `ego` of the window; the others react to it.
-    ///
-    /// # Panics
-    /// When the forecast has another number of pedestrians than the window, or more than 255 hypotheses.
-    pub fn of(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
-        let hypotheses = forecast.hypotheses();
-        assert!(
-            window.len() == forecast.pedestrians() && hypotheses <= Self::MOST_HYPOTHESES,
-            "a forecast of this window"
-        );
-        let scene = MixtureScene::new(window, forecast, plan, ego);
-        if scene.people.len() == 1 {
-            return Self::alone(forecast);
-        }
-        let mut mixture = scene.mixture(hypotheses);
-        scene.in_order_of_window(&mut mixture, hypotheses);
-        mixture
-    }
-
     /// The mean of the values `[i][h]` of the hypotheses of a pedestrian in one future; `pair` = `i * K + k`. Exactly
     /// the value of a hypothesis where the future is one.
     pub fn mean<const D: usize>(&self, pair: usize, value: impl Fn(usize, usize) -> [f64; D]) -> [f64; D] {
@@ -85,16 +64,6 @@ impl JointMixture {
         }
         Some(scales)
     }
-
-    /// The futures of one pedestrian are its hypotheses.
-    fn alone(forecast: &Forecast) -> Self {
-        let count = forecast.hypotheses();
-        let same = |k: usize| (0..count).map(move |h| if h == k { 1.0 } else { 0.0 });
-        Self {
-            weights: (0..count).map(|k| forecast.weight(0, k)).collect(),
-            shares: (0..count).flat_map(same).collect(),
-        }
-    }
 }
 
 /// The number of a pedestrian, or its word: the number that stands for a word depends on who came before.
@@ -103,33 +72,38 @@ fn name(window: &Window, i: usize) -> PedestrianName {
     if id.0 < FRAME_LIMIT { id.into() } else { window.name(i) }
 }
 
-/// The number, or the FNV-1a hash of the word.
-fn seed(name: &PedestrianName) -> u64 {
-    match name {
-        PedestrianName::Number(number) => number.cast_unsigned(),
-        PedestrianName::Word(word) => word
-            .bytes()
-            .fold(0xcbf2_9ce4_8422_2325, |hash: u64, byte| (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)),
-    }
-}
-
-/// The pedestrians in the order of their names, which does not depend on the order of the window, and then who follows
-/// the plan.
-struct MixtureScene {
+/// The pedestrians of a scene with samples of what they do, and who follows the plan after them. Their order depends on
+/// what they may do, and not on their names.
+#[derive(Debug)]
+pub struct JointScene<'a> {
+    forecast: &'a Forecast,
     people: Vec<Hypotheses>,
-    seeds: Vec<u64>,
     pairs: Vec<Pair>,
     /// Index in the window of each pedestrian.
     order: Vec<usize>,
+    /// Pedestrians who may influence each other.
+    parts: Vec<Vec<usize>>,
+    /// The hypothesis of each pedestrian in each sample, `[N][S]`; those of one part have nothing to do with those of
+    /// another.
+    chosen: Vec<Vec<u8>>,
 }
 
-impl MixtureScene {
-    fn new(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
-        let names: Vec<PedestrianName> = (0..window.len()).map(|i| name(window, i)).collect();
+impl<'a> JointScene<'a> {
+    /// The most hypotheses of a pedestrian.
+    pub const MOST_HYPOTHESES: usize = 255;
+
+    /// The scene of this window. Who follows the plan, if there is one, is somebody else, or the pedestrian `ego` of the
+    /// window; the others react to it.
+    ///
+    /// # Panics
+    /// When the forecast has another number of pedestrians than the window, or more than 255 hypotheses.
+    pub fn of(window: &Window, forecast: &'a Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
+        let fits = window.len() == forecast.pedestrians() && forecast.hypotheses() <= Self::MOST_HYPOTHESES;
+        assert!(fits, "a forecast of this window");
+        let all: Vec<Hypotheses> = (0..window.len()).map(|i| Hypotheses::of(window, forecast, i)).collect();
         let mut order: Vec<usize> = (0..window.len()).collect();
-        order.sort_unstable_by(|&i, &j| names[i].cmp(&names[j]));
-        let mut people: Vec<Hypotheses> = order.iter().map(|&i| Hypotheses::of(window, forecast, i)).collect();
-        let mut seeds: Vec<u64> = order.iter().map(|&i| seed(&names[i])).collect();
+        order.sort_by(|&i, &j| all[i].compare(&all[j]).then_with(|| name(window, i).cmp(&name(window, j))));
+        let mut people: Vec<Hypotheses> = order.iter().map(|&i| all[i].clone()).collect();
         let mut tracks: Vec<Option<&[Position]>> = order.iter().map(|&i| Some(window.observed(i))).collect();
         if let Some(plan) = plan {
             let path = std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position);
@@ -138,17 +112,72 @@ impl MixtureScene {
                 people[ego] = Hypotheses::certain(people[ego].present, &path, radius);
             } else {
                 people.push(Hypotheses::certain(plan.at(0.0).position, &path, radius));
-                seeds.push(0);
                 tracks.push(None);
             }
         }
         let pairs = pairs_of(Energy::learned(), &people, &tracks);
-        Self { people, seeds, pairs, order }
+        let parts = parts(&people, &pairs);
+        let mut ranks = vec![0; people.len()];
+        for (rank, &i) in parts.iter().flat_map(|part| part.iter().enumerate()) {
+            ranks[i] = rank as u64;
+        }
+        let chosen = sampling::samples(&people, &pairs, &ranks, SAMPLES);
+        Self { forecast, people, pairs, order, parts, chosen }
     }
 
-    /// The futures, with the pedestrians in the order of the scene.
-    fn mixture(&self, hypotheses: usize) -> JointMixture {
-        let chosen = sampling::samples(&self.people, &self.pairs, &self.seeds, SAMPLES);
+    /// The parts of the scene, with the pedestrians as the window counts them.
+    pub fn parts(&self) -> Vec<ScenePart> {
+        let in_window = self.parts.iter().filter(|part| part[0] < self.order.len());
+        let is_certain = |i: usize| self.people[i].count() == 1;
+        let given: Vec<&Pair> = self.pairs.iter().filter(|p| is_certain(p.first) || is_certain(p.second)).collect();
+        let mut parts: Vec<ScenePart> = in_window.map(|part| self.part(part, &given)).collect();
+        parts.sort_unstable_by_key(|part| part.pedestrians[0]);
+        parts
+    }
+
+    fn part(&self, members: &[usize], given: &[&Pair]) -> ScenePart {
+        if let &[alone] = members {
+            return ScenePart::alone(self.order[alone], self.weights_alone(alone, given));
+        }
+        let mut members = members.to_vec();
+        members.sort_unstable_by_key(|&i| self.order[i]);
+        ScenePart {
+            pedestrians: members.iter().map(|&i| self.order[i]).collect(),
+            weights: vec![1.0 / SAMPLES as f64; SAMPLES],
+            chosen: members.iter().map(|&i| self.chosen[i].clone()).collect(),
+        }
+    }
+
+    /// The weights of a pedestrian whom nobody influences but those whose paths are given.
+    fn weights_alone(&self, i: usize, given: &[&Pair]) -> Vec<f64> {
+        let one = &self.people[i];
+        if one.count() == 1 {
+            return vec![1.0];
+        }
+        let mut weights: Vec<f64> = (0..one.count()).map(|k| self.forecast.weight(self.order[i], k)).collect();
+        let mut with = given.iter().filter(|pair| pair.first == i || pair.second == i).peekable();
+        if with.peek().is_none() {
+            return weights;
+        }
+        for factors in with.map(|pair| pair.factors(pair.first == i, 0, one.count())) {
+            for (weight, factor) in weights.iter_mut().zip(factors) {
+                *weight *= f64::from(*factor);
+            }
+        }
+        let total: f64 = weights.iter().sum();
+        weights.into_iter().map(|weight| weight / total).collect()
+    }
+
+    /// As many futures of the whole scene as a pedestrian has hypotheses, from the samples of its parts. Those of one
+    /// pedestrian are its hypotheses.
+    pub fn mixture(&self) -> JointMixture {
+        let hypotheses = self.forecast.hypotheses();
+        if self.people.len() == 1 {
+            let same = |k: usize| (0..hypotheses).map(move |h| if h == k { 1.0 } else { 0.0 });
+            let weights = (0..hypotheses).map(|k| self.forecast.weight(0, k)).collect();
+            return JointMixture { weights, shares: (0..hypotheses).flat_map(same).collect() };
+        }
+        let chosen = self.together();
         let (labels, sizes) = by_size(quantisation::clusters(&self.people, &chosen, hypotheses), hypotheses);
         let row = hypotheses * hypotheses;
         let mut shares = vec![0.0; self.people.len() * row];
@@ -166,18 +195,35 @@ impl MixtureScene {
             let future = shares.chunks_exact_mut(row).map(|of_each| &mut of_each[k * hypotheses..][..hypotheses]);
             keep_apart(&self.people, &self.pairs, &mut future.collect::<Vec<_>>());
         }
-        JointMixture { weights: sizes.iter().map(|size| f64::from(*size) / SAMPLES as f64).collect(), shares }
+        // In the order of the window, without who follows the plan.
+        let mut in_window = vec![0.0; self.order.len() * row];
+        for (&i, shares) in self.order.iter().zip(shares.chunks_exact(row)) {
+            in_window[i * row..][..row].copy_from_slice(shares);
+        }
+        let weights = sizes.iter().map(|size| f64::from(*size) / SAMPLES as f64).collect();
+        JointMixture { weights, shares: in_window }
     }
 
-    /// The pedestrians of the mixture in the order of the window, without who follows the plan.
-    fn in_order_of_window(&self, mixture: &mut JointMixture, hypotheses: usize) {
-        let row = hypotheses * hypotheses;
-        let mut shares = vec![0.0; self.order.len() * row];
-        for (rank, &i) in self.order.iter().enumerate() {
-            shares[i * row..][..row].copy_from_slice(&mixture.shares[rank * row..][..row]);
+    /// Samples of the whole scene: those of each part, in an order that is independent of the others.
+    fn together(&self) -> Vec<Vec<u8>> {
+        let mut chosen = self.chosen.clone();
+        for (index, part) in self.parts.iter().enumerate().skip(1) {
+            let order = sampling::shuffled(&mut sampling::random(index as u64, 2), SAMPLES);
+            for &i in part {
+                chosen[i] = order.iter().map(|&s| self.chosen[i][s]).collect();
+            }
         }
-        mixture.shares = shares;
+        chosen
     }
+}
+
+/// What pairs connect, each in ascending order. Whose path is certain connects nobody.
+fn parts(people: &[Hypotheses], pairs: &[Pair]) -> Vec<Vec<usize>> {
+    let mut links: Vec<usize> = (0..people.len()).collect();
+    for pair in pairs.iter().filter(|pair| [pair.first, pair.second].iter().all(|&i| people[i].count() > 1)) {
+        link(&mut links, pair.first, pair.second);
+    }
+    linked(&mut links).into_values().collect()
 }
 
 /// The clusters of the samples with numbers in the order of their sizes, largest first, and these sizes.

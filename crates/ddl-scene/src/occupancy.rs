@@ -1,12 +1,15 @@
 //! Where somebody is: grids of the probability that a cell is occupied.
 //!
-//! A cell is occupied by pedestrian i in future k with the probability `m_ik` that the disc of its body covers the
-//! centre of the cell: the mass of Student's t ([`Spread`](ddl_core::Spread)) within the radius of the body around that
-//! centre (`mass.rs`). Given the future, pedestrians are independent, and
+//! A cell is occupied by pedestrian i on its hypothesis h with the probability `m_ih` that the disc of its body covers
+//! the centre of the cell: the mass of Student's t ([`Spread`](ddl_core::Spread)) within the radius of the body around
+//! that centre (`mass.rs`). For a part of the scene with samples s of the weight `w_s`, in which i follows `h_is`,
 //!
 //! ```text
-//! P(occupied) = sum_k w_k (1 - prod_i (1 - m_ik))
+//! P(occupied by the part) = sum_s w_s (1 - prod_i (1 - m_ih_is)),   P(occupied) = 1 - prod (1 - P(occupied by the part))
 //! ```
+//!
+//! Where two are not both likely to be there, they count as independent, which changes no probability by more than
+//! 0.001 for each.
 //!
 //! At the moment itself the spread is 0, and the discs are those of the present positions.
 
@@ -15,11 +18,14 @@ mod mass;
 #[cfg(test)]
 mod tests;
 
-use crate::{error::SceneError, futures::Futures};
+use crate::{error::SceneError, futures::Futures, parts::ScenePart};
 use ddl_core::{HORIZON, Position, TIME_STEP, bounds};
 use mass::MassTable;
 use rayon::prelude::*;
+use std::ops::Range;
 
+/// The probability that somebody and others are in a cell, above which they do not count as independent.
+const BOTH: f64 = 1e-3;
 /// The last time of a forecast, seconds after the moment, and what rounding may add to it.
 const LAST: f64 = TIME_STEP * HORIZON as f64;
 const ROUNDING: f64 = 1e-9;
@@ -122,8 +128,9 @@ impl Futures {
     /// The margin is negative or not finite; as [`Area::new`].
     pub fn area(&self, margin: f64, cell: f64) -> Result<Area, SceneError> {
         check("the margin", margin, margin >= 0.0, "a number of metres, 0 or more")?;
-        let pairs = (0..self.count()).flat_map(|k| (0..self.pedestrians()).map(move |i| (i, k)));
-        let paths = pairs.flat_map(|(i, k)| self.forecast().hypothesis(i, k)).copied();
+        let count = self.hypotheses().hypotheses();
+        let pairs = (0..count).flat_map(|k| (0..self.pedestrians()).map(move |i| (i, k)));
+        let paths = pairs.flat_map(|(i, k)| self.hypotheses().hypothesis(i, k)).copied();
         let places = paths.chain((0..self.pedestrians()).map(|i| self.present(i)));
         let [low, high] = bounds(places).unwrap_or_default();
         let low = low.map(|coordinate| coordinate - margin);
@@ -156,57 +163,100 @@ impl Futures {
     }
 
     fn grid(&self, area: &Area, time: f64, body: f64) -> Occupancy {
-        let pedestrians: Vec<usize> = (0..self.pedestrians()).collect();
-        let table = |&i: &usize| MassTable::new(body, self.scale(i, time).unwrap_or(0.0));
-        let tables: Vec<MassTable> = pedestrians.par_iter().map(table).collect();
-        let places: Vec<Vec<Position>> =
-            (0..self.count()).map(|k| pedestrians.iter().map(|&i| self.position(i, k, time)).collect()).collect();
+        let count = self.hypotheses().hypotheses();
+        let bodies = |part: &ScenePart| -> Vec<OccupyingBody> {
+            let of = |(row, &i): (usize, &usize)| OccupyingBody {
+                pedestrian: i,
+                shares: part.shares(row, count),
+                places: (0..count).map(|k| self.position(i, k, time)).collect(),
+                table: MassTable::new(body, self.scale(i, time).unwrap_or(0.0)),
+            };
+            part.pedestrians().iter().enumerate().map(of).collect()
+        };
+        let parts: Vec<Vec<OccupyingBody>> = self.parts().par_iter().map(bodies).collect();
         let mut probabilities = vec![0.0; area.width * area.height];
         let rows = probabilities.par_chunks_mut(area.width).enumerate();
-        rows.for_each_init(
-            || vec![1.0; area.width],
-            |free, (row, probabilities)| {
-                for (k, places) in places.iter().enumerate() {
-                    add_future(area, row, places.iter().zip(&tables), self.weight(k), free, probabilities);
-                }
-            },
-        );
-        // The weights sum to 1 up to rounding.
-        for probability in &mut probabilities {
-            *probability = probability.min(1.0);
-        }
+        rows.for_each(|(row, probabilities)| {
+            let mut free = vec![1.0; area.width];
+            for (part, bodies) in self.parts().iter().zip(&parts) {
+                free_of_part(area, row, part, bodies, &mut free);
+            }
+            for (probability, free) in probabilities.iter_mut().zip(free) {
+                *probability = (1.0 - free).clamp(0.0, 1.0) as f32;
+            }
+        });
         Occupancy { area: *area, time, probabilities }
     }
 }
 
-/// Adds one future to a row of cells. `free` is a buffer for the probabilities that a cell is empty; it must hold 1 in
-/// every entry, and holds 1 again afterwards.
-fn add_future<'a>(
-    area: &Area,
-    row: usize,
-    bodies: impl Iterator<Item = (&'a Position, &'a MassTable)>,
-    weight: f64,
-    free: &mut [f32],
-    probabilities: &mut [f32],
-) {
-    let [mut first, mut end] = [area.width, 0];
-    for (place, table) in bodies {
-        let dy = area.centre([0, row])[1] - place[1];
-        let half = table.reach() * table.reach() - dy * dy;
+/// A pedestrian at one time.
+struct OccupyingBody {
+    pedestrian: usize,
+    /// `[H]`: probabilities of the hypotheses, and where they are (m).
+    shares: Vec<f64>,
+    places: Vec<Position>,
+    table: MassTable,
+}
+
+impl OccupyingBody {
+    /// The columns of a row of cells that it may occupy on its hypothesis `h`.
+    fn columns(&self, area: &Area, row: usize, h: usize) -> Range<usize> {
+        let [x, y] = self.places[h];
+        let dy = area.centre([0, row])[1] - y;
+        let half = self.table.reach() * self.table.reach() - dy * dy;
         if half < 0.0 {
-            continue;
+            return 0..0;
         }
         let column = |x: f64| ((x - area.origin[0]) / area.cell).clamp(0.0, area.width as f64) as usize;
-        let [from, to] = [column(place[0] - half.sqrt()), column(place[0] + half.sqrt() + area.cell)];
-        for (offset, free) in free[from..to].iter_mut().enumerate() {
-            let dx = area.centre([from + offset, row])[0] - place[0];
-            *free *= 1.0 - table.mass((dx * dx + dy * dy).sqrt()) as f32;
-        }
-        [first, end] = [first.min(from), end.max(to)];
+        column(x - half.sqrt())..column(x + half.sqrt() + area.cell)
     }
-    for (free, probability) in free[first.min(end)..end].iter_mut().zip(&mut probabilities[first.min(end)..end]) {
-        *probability += weight as f32 * (1.0 - *free);
-        *free = 1.0;
+
+    /// The probability that it covers a place on its hypothesis `h`.
+    fn mass(&self, h: usize, place: Position) -> f64 {
+        let [dx, dy] = [0, 1].map(|axis| place[axis] - self.places[h][axis]);
+        self.table.mass((dx * dx + dy * dy).sqrt())
+    }
+}
+
+/// Multiplies the probabilities that the cells of a row are free with those that the pedestrians of a part leave them
+/// free.
+fn free_of_part(area: &Area, row: usize, part: &ScenePart, bodies: &[OccupyingBody], free: &mut [f64]) {
+    // For each body, the columns from the first that it may occupy, with the probability that it does.
+    let mut occupied: Vec<(usize, Vec<f64>)> = Vec::with_capacity(bodies.len());
+    for body in bodies {
+        let columns: Vec<Range<usize>> = (0..body.places.len()).map(|h| body.columns(area, row, h)).collect();
+        let some = columns.iter().zip(&body.shares).filter(|(columns, share)| !columns.is_empty() && **share > 0.0);
+        let first = some.clone().map(|(columns, _)| columns.start).min().unwrap_or(0);
+        let end = some.map(|(columns, _)| columns.end).max().unwrap_or(0);
+        let mut probabilities = vec![0.0; end.saturating_sub(first)];
+        for (h, (columns, &share)) in columns.into_iter().zip(&body.shares).enumerate().filter(|(_, (_, s))| **s > 0.0) {
+            for column in columns {
+                probabilities[column - first] += share * body.mass(h, area.centre([column, row]));
+            }
+        }
+        occupied.push((first, probabilities));
+    }
+    let first = occupied.iter().filter(|(_, all)| !all.is_empty()).map(|(first, _)| *first).min().unwrap_or(0);
+    let end = occupied.iter().map(|(first, all)| first + all.len()).max().unwrap_or(0);
+    let mut both = Vec::new();
+    for column in first..end {
+        let of = |(first, all): &(usize, Vec<f64>)| all.get(column.wrapping_sub(*first)).copied().unwrap_or(0.0);
+        let total: f64 = occupied.iter().map(of).sum();
+        both.clear();
+        for (body, occupied) in bodies.iter().zip(occupied.iter().map(of)) {
+            if occupied * (total - occupied) > BOTH {
+                both.push(body);
+            } else {
+                free[column] *= 1.0 - occupied;
+            }
+        }
+        if !both.is_empty() {
+            let place = area.centre([column, row]);
+            let of = |body: &OccupyingBody| (0..body.places.len()).map(|h| [1.0 - body.mass(h, place)]).collect();
+            let away: Vec<Vec<[f64; 1]>> = both.iter().map(|body| of(body)).collect();
+            let [occupied] = part.somebody(both.iter().zip(&away).map(|(body, away)| (body.pedestrian, &away[..])));
+            free[column] *= 1.0 - occupied;
+        }
     }
 }
 

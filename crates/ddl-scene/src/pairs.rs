@@ -69,19 +69,25 @@ pub(crate) fn neighbours(people: usize, pairs: &[Pair]) -> Vec<Vec<(usize, usize
     neighbours
 }
 
-/// Pairs, in ascending order, that are close enough for a conflict or for walking together.
+/// Pairs, in ascending order, that are close enough for a conflict or for walking together: of each pedestrian, those
+/// with the nearest whom it may meet. So who is out of reach takes nobody's place.
 fn near_pairs(energy: &Energy, people: &[Hypotheses]) -> BTreeSet<(usize, usize)> {
     let present: Vec<Position> = people.iter().map(|one| one.present).collect();
     let index = SpatialIndex::new(&present);
+    let reach = |one: &Hypotheses| one.reach + one.radius;
+    let within = |reach: f64| (reach + energy.reach()).max(energy.together_within());
+    let farthest = people.iter().map(reach).fold(0.0, f64::max);
     let mut pairs = BTreeSet::new();
     for (i, one) in people.iter().enumerate() {
-        for j in index.nearest_others(i, one.present, MOST_NEIGHBOURS) {
-            let apart = distance(one.present, people[j].present);
-            let meet = one.reach + people[j].reach + one.radius + people[j].radius + energy.reach();
-            if apart < meet.max(energy.together_within()) {
-                pairs.insert((i.min(j), i.max(j)));
-            }
+        let others = index.within_box(one.present, within(reach(one) + farthest)).filter(|&j| j != i);
+        let apart = others.map(|j| (distance(one.present, people[j].present), j));
+        let mut near: Vec<(f64, usize)> =
+            apart.filter(|&(apart, j)| apart < within(reach(one) + reach(&people[j]))).collect();
+        if near.len() > MOST_NEIGHBOURS {
+            near.select_nth_unstable_by(MOST_NEIGHBOURS, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+            near.truncate(MOST_NEIGHBOURS);
         }
+        pairs.extend(near.into_iter().map(|(_, j)| (i.min(j), i.max(j))));
     }
     pairs
 }

@@ -1,17 +1,19 @@
 //! The risk of a plan: how likely somebody comes close to it.
 //!
-//! In future k, of the weight `w_k`, pedestrian i is at `path_ik(t) + s_i(t) z_i`: the deviation `z_i` from its path is
+//! A pedestrian i that follows its hypothesis h is at `path_ih(t) + s_i(t) z_i`: the deviation `z_i` from its path is
 //! distributed by Student's t ([`Spread`](ddl_core::Spread)), lasts for the whole future, grows with the scale `s_i(t)`
 //! and is independent of those of other pedestrians. At the moment itself the scale is the deviation of the last
 //! observed position, 0 for a row; between the steps and the rows of the plan everything moves on straight lines. With
-//! the share `P_ik` of deviations that come close,
+//! the share `P_ih` of deviations that come close, and the samples s of a part of the scene, of the weight `w_s`, in
+//! which i follows `h_is`,
 //!
 //! ```text
-//! P(somebody) = sum_k w_k (1 - prod_i (1 - P_ik)),    P(pedestrian i) = sum_k w_k P_ik
+//! P(somebody of the part) = sum_s w_s (1 - prod_i (1 - P_ih_is)),    P(pedestrian i) = sum_s w_s P_ih_is
+//! P(somebody)             = 1 - prod (1 - P(somebody of the part))
 //! ```
 //!
-//! Shares are those of 64 deviations of equal probability (`quadrature.rs`), the same for every pedestrian and
-//! future, so that results depend on nothing but their input. Less than 1/64 of one future may count as 0.
+//! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that results
+//! depend on nothing but their input. Less than 1/64 of one hypothesis may count as 0.
 
 mod course;
 mod crowd;
@@ -118,70 +120,95 @@ impl Futures {
 
     fn risk(&self, crowd: &CrowdAtRisk, sweep: &Sweep, odds: &[f64], ego: Option<usize>) -> Risk {
         let mut pedestrians = vec![0.0; self.pedestrians()];
-        let [mut steps, mut until] = [[0.0; HORIZON]; 2];
-        let near: Vec<usize> = crowd.near(sweep).into_iter().filter(|&i| Some(i) != ego).collect();
-        for k in 0..self.count() {
-            let weight = self.weight(k);
-            let mut nobody: Option<[[f64; HORIZON]; 2]> = None;
-            for &i in &near {
-                let Some(hits) = crowd.hits(sweep, i, k) else { continue };
-                // People who are close already cannot keep away. The odds that the others come close are divided by a
-                // factor; the probability that they do so by an earlier step falls in proportion.
-                let [close_now, close_later] = hits.until[HORIZON - 1];
-                let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
-                let reduction = odds[i] / (1.0 - of_others + of_others * odds[i]);
-                let nobody = nobody.get_or_insert([[1.0; HORIZON]; 2]);
-                for (nobody, hits) in nobody.iter_mut().zip([&hits.steps, &hits.until]) {
-                    for (nobody, [close_now, close_later]) in nobody.iter_mut().zip(hits) {
-                        *nobody *= 1.0 - close_now - reduction * close_later;
-                    }
-                }
-                pedestrians[i] += weight * (close_now + reduction * close_later);
+        let mut somebody = [0.0; 2 * HORIZON];
+        let near = crowd.near(sweep).into_iter().filter(|&i| Some(i) != ego);
+        for (part, members) in crowd.by_part(near) {
+            let away = members.into_iter().filter_map(|i| Some((i, staying_away(crowd, sweep, i, odds[i])?)));
+            let away: Vec<(usize, Vec<StayingAway>)> = away.collect();
+            for (i, away) in &away {
+                let of_each = crowd.shares[*i].iter().zip(away);
+                pedestrians[*i] = of_each.map(|(share, away)| share * (1.0 - away[2 * HORIZON - 1])).sum();
             }
-            for (sums, nobody) in [&mut steps, &mut until].into_iter().zip(nobody.iter().flatten()) {
-                for (sum, nobody) in sums.iter_mut().zip(nobody) {
-                    *sum += weight * (1.0 - nobody);
-                }
+            let of_part = self.parts()[part].somebody(away.iter().map(|(i, away)| (*i, &away[..])));
+            for (sum, of_part) in somebody.iter_mut().zip(of_part) {
+                *sum += of_part - *sum * of_part;
             }
         }
         // The weights sum to 1 up to rounding.
-        for probability in pedestrians.iter_mut().chain(&mut steps).chain(&mut until) {
+        for probability in pedestrians.iter_mut().chain(&mut somebody) {
             *probability = probability.min(1.0);
         }
-        let total = until[HORIZON - 1];
-        Risk { total, pedestrians, steps, until }
+        let [steps, until] = [0, HORIZON].map(|from| std::array::from_fn(|step| somebody[from + step]));
+        Risk { total: somebody[2 * HORIZON - 1], pedestrians, steps, until }
     }
 
     fn clearance(&self, crowd: &CrowdAtRisk, plan: &Plan) -> Clearance {
         let legs = legs(plan);
-        let mut clearance = Clearance { nearest: 0.0, pedestrians: vec![0.0; self.pedestrians()] };
-        for k in 0..self.count() {
-            let weight = self.weight(k);
-            let mut distances = Vec::with_capacity(self.pedestrians() * DEVIATIONS);
-            for (i, expected) in clearance.pedestrians.iter_mut().enumerate() {
-                let of_pedestrian = crowd.distances(&legs, i, k).map(|distance| distance.max(0.0));
-                *expected += weight * of_pedestrian.iter().sum::<f64>() / DEVIATIONS as f64;
-                distances.extend(of_pedestrian.map(|distance| (distance, i)));
+        let distances: Vec<Vec<[f64; DEVIATIONS]>> = (0..self.pedestrians())
+            .map(|i| {
+                let of_each = (0..self.hypotheses().hypotheses()).map(|h| crowd.distances(&legs, i, h));
+                of_each.map(|distances| distances.map(|distance| distance.max(0.0))).collect()
+            })
+            .collect();
+        let mean = |distances: &[f64; DEVIATIONS]| distances.iter().sum::<f64>() / DEVIATIONS as f64;
+        let expected = distances.iter().zip(&crowd.shares).map(|(distances, shares)| {
+            distances.iter().zip(shares).map(|(distances, share)| share * mean(distances)).sum()
+        });
+        // Somebody is surely nearer than this.
+        let most = |distances: &Vec<[f64; DEVIATIONS]>| distances.as_flattened().iter().copied().fold(0.0, f64::max);
+        let width = distances.iter().map(most).fold(f64::INFINITY, f64::min) / CELLS as f64;
+        let mut farther = [1.0; CELLS];
+        for (part, members) in crowd.by_part(0..self.pedestrians()) {
+            let farther_of = |i: usize| distances[i].iter().map(|distances| farther_shares(distances, width)).collect();
+            let all: Vec<(usize, Vec<[f64; CELLS]>)> = members.into_iter().map(|i| (i, farther_of(i))).collect();
+            let nearer = self.parts()[part].somebody(all.iter().map(|(i, farther)| (*i, &farther[..])));
+            for (farther, nearer) in farther.iter_mut().zip(nearer) {
+                *farther *= 1.0 - nearer;
             }
-            clearance.nearest += weight * expected_least(distances, self.pedestrians());
         }
-        clearance
+        Clearance { nearest: width * farther.iter().sum::<f64>(), pedestrians: expected.collect() }
     }
 }
 
-/// Expected least of N independent numbers, each equally likely one of its `DEVIATIONS` values, given with their index.
-fn expected_least(mut values: Vec<(f64, usize)>, n: usize) -> f64 {
-    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-    let mut left = vec![DEVIATIONS; n];
-    let (mut expected, mut above, mut before) = (0.0, 1.0, 0.0);
-    for (value, i) in values {
-        expected += above * (value - before);
-        before = value;
-        above *= (left[i] - 1) as f64 / left[i] as f64;
-        left[i] -= 1;
-        if left[i] == 0 {
-            break;
+/// Cells of distance over which the least one is integrated.
+const CELLS: usize = 256;
+
+/// In each cell of this width (m), from 0 on, the mean share of distances that are larger.
+fn farther_shares(distances: &[f64; DEVIATIONS], width: f64) -> [f64; CELLS] {
+    let mut shares = [0.0; CELLS];
+    for distance in distances {
+        let end = distance / width;
+        for share in &mut shares[..(end as usize).min(CELLS)] {
+            *share += 1.0 / DEVIATIONS as f64;
+        }
+        if let Some(last) = shares.get_mut(end as usize) {
+            *last += end.fract() / DEVIATIONS as f64;
         }
     }
-    expected
+    shares
+}
+
+/// Probabilities of a hypothesis to stay away during each step, then until its end.
+type StayingAway = [f64; 2 * HORIZON];
+
+/// Of each hypothesis of pedestrian `i`; `None` if all surely do. People who are close already cannot keep away. The
+/// odds that the others come close are multiplied by a factor; the probability that they do so by an earlier step falls
+/// in proportion.
+fn staying_away(crowd: &CrowdAtRisk, sweep: &Sweep, i: usize, odds: f64) -> Option<Vec<StayingAway>> {
+    let mut some = false;
+    let of_hypothesis = |(h, share): (usize, &f64)| {
+        let Some(hits) = (*share > 0.0).then(|| crowd.hits(sweep, i, h)).flatten() else { return [1.0; 2 * HORIZON] };
+        some = true;
+        let [close_now, close_later] = hits.until[HORIZON - 1];
+        let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
+        let reduction = odds / (1.0 - of_others + of_others * odds);
+        let close = hits.steps.iter().chain(&hits.until).map(|[now, later]| now + reduction * later);
+        let mut away = [1.0; 2 * HORIZON];
+        for (away, close) in away.iter_mut().zip(close) {
+            *away -= close;
+        }
+        away
+    };
+    let all = crowd.shares[i].iter().enumerate().map(of_hypothesis).collect();
+    some.then_some(all)
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianId, PedestrianNames, Position, Window, between, distance};
-use ddl_scene::{JointMixture, Plan, PlanPoint, groups};
+use ddl_scene::{JointMixture, JointScene, Plan, PlanPoint, groups};
 use proptest::{collection::vec, prelude::*};
 
 /// Directions of the hypotheses relative to the way on (radians), and their weights.
@@ -51,7 +51,7 @@ fn scene(people: &[Person], ids: &[i64]) -> (Window, Forecast) {
 fn mixture(people: &[Person]) -> (Forecast, JointMixture) {
     let ids: Vec<i64> = (0..people.len() as i64).collect();
     let (window, forecast) = scene(people, &ids);
-    let mixture = JointMixture::of(&window, &forecast, None, None);
+    let mixture = JointScene::of(&window, &forecast, None, None).mixture();
     (forecast, mixture)
 }
 
@@ -101,7 +101,7 @@ proptest! {
         others.rotate_left(turn);
         other_ids.rotate_left(turn);
         let [(a, b), (c, d)] = [scene(&people, &ids), scene(&others, &other_ids)];
-        let (one, mut other) = (JointMixture::of(&a, &b, None, None), JointMixture::of(&c, &d, None, None));
+        let (one, mut other) = (JointScene::of(&a, &b, None, None).mixture(), JointScene::of(&c, &d, None, None).mixture());
         other.shares.rotate_right(turn * K * K);
         prop_assert_eq!(one, other);
         // Words get their numbers by arrival.
@@ -109,7 +109,7 @@ proptest! {
             let (window, forecast) = scene(people, &(FRAME_LIMIT..).take(people.len()).collect::<Vec<_>>());
             let named = window.pedestrians().iter().zip(words);
             let names = named.map(|(id, word)| (*id, format!("p{word}").into())).collect();
-            JointMixture::of(&window.with_names(PedestrianNames::new(names)), &forecast, None, None)
+            JointScene::of(&window.with_names(PedestrianNames::new(names)), &forecast, None, None).mixture()
         };
         let (one, mut other) = (of_words(&people, &ids), of_words(&others, &other_ids));
         other.shares.rotate_right(turn * K * K);
@@ -129,7 +129,7 @@ proptest! {
             let pairs = || (0..people.len()).flat_map(|i| (0..K).map(move |k| (i, k)));
             let paths = pairs().flat_map(|(i, k)| forecast.hypothesis(i, k)).map(|at| place(*at));
             let forecast = Forecast::new(people.len(), K, paths.collect(), weights.clone(), None);
-            JointMixture::of(&window, &forecast.unwrap(), None, None)
+            JointScene::of(&window, &forecast.unwrap(), None, None).mixture()
         };
         prop_assert_eq!(seen(|at| at), seen(|[x, y]| [200_000.0 - y, x - 300_000.0]));
     }
@@ -176,11 +176,11 @@ proptest! {
         let standing = |position: Position| Plan::new(vec![PlanPoint { time: 0.0, position, radius: 0.0 }]).unwrap();
         let (window, forecast) = scene(&people, &ids);
         let far = standing([900.0, 0.0]);
-        let given = |plan| JointMixture::of(&window, &forecast, plan, None);
+        let given = |plan| JointScene::of(&window, &forecast, plan, None).mixture();
         prop_assert_eq!(given(Some(&far)), given(None));
         let person = ([0.3, 0.0], 0.0, 1.2);
         let (window, forecast) = scene(&[person], &[1]);
-        let mixture = JointMixture::of(&window, &forecast, Some(&standing([x, 0.0])), None);
+        let mixture = JointScene::of(&window, &forecast, Some(&standing([x, 0.0])), None).mixture();
         prop_assert!(marginal(&mixture, 0)[straight(person)] < 0.1, "{:?}", marginal(&mixture, 0));
     }
 }

@@ -33,14 +33,6 @@ fn futures_are_in_the_order_of_their_sizes() {
     assert_eq!((labels, sizes), (vec![0, 2, 0, 1, 0, 1], vec![3, 2, 1, 0]));
 }
 
-/// FNV-1a as published: of no text, and of "a" and "foobar".
-#[test]
-fn seeds_of_words_and_numbers() {
-    let of = |word: &str| seed(&PedestrianName::Word(word.into()));
-    assert_eq!([of("a"), of("foobar")], [0xaf63_dc4c_8601_ec8c, 0x8594_4171_f739_67e8]);
-    assert_eq!(seed(&PedestrianName::Number(-2)), u64::MAX - 1);
-}
-
 /// A plan that crosses the way of the first hypothesis 2 s after the moment, 2 m ahead, and nothing else.
 #[test]
 fn a_plan_is_avoided_where_it_is_at_that_time() {
@@ -53,7 +45,7 @@ fn a_plan_is_avoided_where_it_is_at_that_time() {
         plan(&rows.map(|[time, x, share]| [time + delay, x, 1.0, share * radius]))
     };
     let shares = |plan: &Plan, ego, count: usize| -> [Vec<f64>; 2] {
-        let scene = MixtureScene::new(&window, &forecast, Some(plan), ego);
+        let scene = JointScene::of(&window, &forecast, Some(plan), ego);
         let chosen = sampling::samples(&scene.people, &scene.pairs, &[7, 8, 9, 10], count);
         [0, 1].map(|i| {
             let mut shares = vec![0.0; 3];
@@ -78,6 +70,6 @@ fn a_plan_is_avoided_where_it_is_at_that_time() {
     let [own, _] = shares(&crossing(0.0, 0.0), Some(0), 8);
     assert_eq!(own, [1.0, 0.0, 0.0]);
     // The likeliest future has somebody out of the way, because each future is free of collisions.
-    let mixture = JointMixture::of(&window, &forecast, Some(&crossing(0.0, 0.0)), None);
+    let mixture = JointScene::of(&window, &forecast, Some(&crossing(0.0, 0.0)), None).mixture();
     assert!((0..3).all(|k| mixture.weights[k] == 0.0 || mixture.shares[3 * k] < 0.999), "{mixture:?}");
 }

@@ -5,6 +5,7 @@ use super::quadrature::{DEVIATIONS, Quadrature};
 use crate::{error::SceneError, futures::Futures, plan::Plan};
 use ddl_core::{HORIZON, Position, between, bounds};
 use std::array::from_fn;
+use std::collections::BTreeMap;
 
 /// What `f32` may be wrong by, as a share of the size of a coordinate.
 const ROUNDING: f64 = 1e-6;
@@ -20,13 +21,35 @@ pub(super) struct CrowdAtRisk {
     paths: Vec<[Position; HORIZON + 1]>,
     /// `[N]`, metres.
     scales: Vec<[f64; HORIZON + 1]>,
-    /// `[K][N]`: around all deviations of a pedestrian in a future.
+    /// `[K][N]`: around all deviations of a pedestrian from a hypothesis.
     rings: Vec<Rings>,
-    /// `[N]`: around those in all futures.
+    /// `[N]`: around those from all hypotheses.
     outer_rings: Vec<Rings>,
     origin: Position,
-    deviations: Quadrature,
+    /// `[K]`: the deviations from each hypothesis.
+    deviations: Vec<Deviations>,
+    /// `[N]`: the part of the scene that each pedestrian belongs to.
+    parts: Vec<usize>,
+    /// `[N][K]`: probabilities of the hypotheses.
+    pub(super) shares: Vec<Vec<f64>>,
+}
+
+#[derive(Debug)]
+struct Deviations {
+    exact: Quadrature,
     blocks: [CrowdBlock; DEVIATIONS / BLOCK],
+}
+
+impl Deviations {
+    fn of_hypothesis(k: usize) -> Self {
+        let exact = Quadrature::of_hypothesis(k);
+        let block = |b: usize| {
+            let [x, y] = [&exact.x, &exact.y].map(|all| from_fn(|j| all[b * BLOCK + j] as f32));
+            let most = f32::hypot(x[BLOCK - 1], y[BLOCK - 1]) * (1.0 + ROUNDING as f32);
+            CrowdBlock { x, y, most }
+        };
+        Self { blocks: from_fn(block), exact }
+    }
 }
 
 /// Deviations one after the other, in scales.
@@ -60,7 +83,8 @@ pub(super) struct Hits {
 
 impl CrowdAtRisk {
     pub(super) fn new(futures: &Futures) -> Result<Self, SceneError> {
-        let (n, forecast) = (futures.pedestrians(), futures.forecast());
+        let (n, forecast) = (futures.pedestrians(), futures.hypotheses());
+        let count = forecast.hypotheses();
         let scales = (0..n).map(|i| {
             let mut scales = [0.0; HORIZON + 1];
             for (step, scale) in scales.iter_mut().enumerate() {
@@ -69,7 +93,7 @@ impl CrowdAtRisk {
             Ok(scales)
         });
         let scales: Vec<_> = scales.collect::<Result<_, SceneError>>()?;
-        let pairs = || (0..futures.count()).flat_map(|k| (0..n).map(move |i| (i, k)));
+        let pairs = || (0..count).flat_map(|k| (0..n).map(move |i| (i, k)));
         let path = |(i, k)| {
             let mut path = [futures.present(i); HORIZON + 1];
             path[1..].copy_from_slice(forecast.hypothesis(i, k));
@@ -77,22 +101,34 @@ impl CrowdAtRisk {
         };
         let paths: Vec<_> = pairs().map(path).collect();
         let origin = futures.present(0);
-        let around = |i: usize, paths: &mut dyn Iterator<Item = &[Position; HORIZON + 1]>| {
-            let paths: Vec<_> = paths.collect();
+        let deviations: Vec<Deviations> = (0..count).map(Deviations::of_hypothesis).collect();
+        let around = |i: usize, of: &[usize]| {
+            let path = |k: usize| &paths[k * n + i];
+            let farthest = of.iter().map(|&k| deviations[k].exact.farthest()).fold(0.0, f64::max);
             rings(origin, |step| {
-                let margin = Quadrature::farthest() * scales[i][step].max(scales[i][step + 1]);
-                (paths.iter().flat_map(move |path| [path[step], path[step + 1]]), margin)
+                let margin = farthest * scales[i][step].max(scales[i][step + 1]);
+                (of.iter().flat_map(move |&k| [path(k)[step], path(k)[step + 1]]), margin)
             })
         };
-        let rings = pairs().map(|(i, k)| around(i, &mut paths[k * n + i..].iter().take(1))).collect();
-        let outer_rings = (0..n).map(|i| around(i, &mut paths[i..].iter().step_by(n))).collect();
-        let deviations = Quadrature::new();
-        let block = |b: usize| {
-            let [x, y] = [&deviations.x, &deviations.y].map(|all| from_fn(|j| all[b * BLOCK + j] as f32));
-            let most = f32::hypot(x[BLOCK - 1], y[BLOCK - 1]) * (1.0 + ROUNDING as f32);
-            CrowdBlock { x, y, most }
-        };
-        Ok(Self { blocks: from_fn(block), n, paths, scales, rings, outer_rings, origin, deviations })
+        let rings = pairs().map(|(i, k)| around(i, &[k])).collect();
+        let all: Vec<usize> = (0..count).collect();
+        let outer_rings = (0..n).map(|i| around(i, &all)).collect();
+        let (mut parts, mut shares) = (vec![0; n], vec![Vec::new(); n]);
+        for (p, part) in futures.parts().iter().enumerate() {
+            for (row, &i) in part.pedestrians().iter().enumerate() {
+                (parts[i], shares[i]) = (p, part.shares(row, count));
+            }
+        }
+        Ok(Self { n, paths, scales, rings, outer_rings, origin, deviations, parts, shares })
+    }
+
+    /// These pedestrians, in ascending order, by the part that they belong to.
+    pub(super) fn by_part(&self, pedestrians: impl Iterator<Item = usize>) -> BTreeMap<usize, Vec<usize>> {
+        let mut by_part: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for i in pedestrians {
+            by_part.entry(self.parts[i]).or_default().push(i);
+        }
+        by_part
     }
 
     /// The room within `within` metres of the edge of a plan.
@@ -106,12 +142,12 @@ impl CrowdAtRisk {
         Sweep { legs, within, rings }
     }
 
-    /// The pedestrians that come close in some future, and perhaps others.
+    /// The pedestrians that come close on some hypothesis, and perhaps others.
     pub(super) fn near(&self, sweep: &Sweep) -> Vec<usize> {
         (0..self.n).filter(|i: &usize| near(&self.outer_rings[*i], &sweep.rings).is_some()).collect()
     }
 
-    /// The deviations of pedestrian `i` that come close in future `k`; `None` if none do.
+    /// The deviations of pedestrian `i` that come close from its hypothesis `k`; `None` if none do.
     pub(super) fn hits(&self, sweep: &Sweep, i: usize, k: usize) -> Option<Hits> {
         let pair = k * self.n + i;
         let near = near(&self.rings[pair], &sweep.rings)?;
@@ -119,9 +155,9 @@ impl CrowdAtRisk {
         for (l, leg) in sweep.legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
             let LegApproach { offsets, scales } = leg.approach(&self.paths[pair], &self.scales[i]);
             let reaches = leg.radii.map(|radius| sweep.within + radius);
-            now[leg.step] |= self.close(offsets, scales, reaches);
+            now[leg.step] |= self.close(k, offsets, scales, reaches);
             if l == 0 && now[0] > 0 {
-                first = self.close([offsets[0]; 2], [scales[0]; 2], [reaches[0]; 2]);
+                first = self.close(k, [offsets[0]; 2], [scales[0]; 2], [reaches[0]; 2]);
             }
         }
         let mut so_far = 0;
@@ -134,15 +170,16 @@ impl CrowdAtRisk {
         (so_far > 0).then_some(Hits { steps, until })
     }
 
-    /// The deviations that come closer during a leg than these distances at its ends, one bit for each.
-    fn close(&self, offsets: [Position; 2], scales: [f64; 2], reaches: [f64; 2]) -> u64 {
+    /// The deviations from a hypothesis that come closer during a leg than these distances at its ends, one bit for
+    /// each.
+    fn close(&self, k: usize, offsets: [Position; 2], scales: [f64; 2], reaches: [f64; 2]) -> u64 {
         let offsets = offsets.map(|offset| offset.map(|number| number as f32));
         let way = PedestrianWay::new(offsets, scales, reaches);
         let nearest = way.nearest() * (1.0 - 4.0 * ROUNDING as f32);
         let reaches = [way.r + way.dr.max(0.0), way.s + way.ds.max(0.0)];
         let mut close = 0;
         // The outermost deviations first: further inside none come close if these stay away.
-        for (b, block) in self.blocks.iter().enumerate().rev() {
+        for (b, block) in self.deviations[k].blocks.iter().enumerate().rev() {
             let reach = reaches[0] + reaches[1] * block.most;
             if nearest > reach * reach {
                 break;
@@ -152,9 +189,9 @@ impl CrowdAtRisk {
         close
     }
 
-    /// The least distance (m) of each deviation of pedestrian `i` in future `k` from the edge of a plan.
+    /// The least distance (m) of each deviation of pedestrian `i` on its hypothesis `k` from the edge of a plan.
     pub(super) fn distances(&self, legs: &[CourseLeg], i: usize, k: usize) -> [f64; DEVIATIONS] {
-        let Quadrature { x, y } = &self.deviations;
+        let Quadrature { x, y } = &self.deviations[k].exact;
         let mut least = [f64::INFINITY; DEVIATIONS];
         for leg in legs {
             let approach = leg.approach(&self.paths[k * self.n + i], &self.scales[i]);

@@ -4,6 +4,8 @@ use std::f64::consts::PI;
 
 /// Number of deviations.
 pub(super) const DEVIATIONS: usize = 64;
+/// Multiples of these, without their whole parts, fill a square evenly: powers of 1 / 1.3247, the plastic number.
+const PLASTIC: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053];
 
 /// Deviations in two dimensions, in scales of the spread; farther out from one to the next.
 #[derive(Debug)]
@@ -13,10 +15,14 @@ pub(super) struct Quadrature {
 }
 
 impl Quadrature {
-    /// Deviation j has the distance of the probability (j + 1/2) / 64, and the golden angle to the one before.
-    pub(super) fn new() -> Self {
+    /// Those from hypothesis `k`. Deviation j has the distance of the probability (j + u) / 64, and the golden angle to
+    /// the one before. The share u, 1/2 for the first hypothesis, and the first angle are others for each, so that
+    /// hypotheses that are alike have more deviations together.
+    pub(super) fn of_hypothesis(k: usize) -> Self {
         let golden = PI * (3.0 - 5.0_f64.sqrt());
-        let polar = |j: usize| (radius((j as f64 + 0.5) / DEVIATIONS as f64), golden * j as f64);
+        let share = (0.5 + PLASTIC[0] * k as f64).fract();
+        let turn = 2.0 * PI * (PLASTIC[1] * k as f64).fract();
+        let polar = |j: usize| (radius((j as f64 + share) / DEVIATIONS as f64), turn + golden * j as f64);
         Self {
             x: std::array::from_fn(|j| polar(j).0 * polar(j).1.cos()),
             y: std::array::from_fn(|j| polar(j).0 * polar(j).1.sin()),
@@ -24,8 +30,8 @@ impl Quadrature {
     }
 
     /// The distance of the last deviation.
-    pub(super) fn farthest() -> f64 {
-        radius(1.0 - 0.5 / DEVIATIONS as f64)
+    pub(super) fn farthest(&self) -> f64 {
+        self.x[DEVIATIONS - 1].hypot(self.y[DEVIATIONS - 1])
     }
 }
 

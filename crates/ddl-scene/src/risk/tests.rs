@@ -122,7 +122,7 @@ proptest! {
         let rows: Vec<_> = rows.iter().map(|&[t, x, y, r]| [t, x + shift, y + shift, r]).collect();
         let (futures, plan) = (with_deviation(&futures(&starts, &velocities, &WEIGHTS, &scales), now), plan(&rows));
         let crowd = CrowdAtRisk::new(&futures).unwrap();
-        let (sweep, Quadrature { x: zx, y: zy }) = (crowd.sweep(&plan, within), Quadrature::new());
+        let (sweep, quadratures) = (crowd.sweep(&plan, within), [0, 1, 2].map(Quadrature::of_hypothesis));
         // Times between which everything moves straight, by step.
         let mut times: Vec<f64> = (0..=12).map(|t| 0.4 * f64::from(t)).chain(rows.iter().map(|row| row[0])).collect();
         times.sort_by(f64::total_cmp);
@@ -132,6 +132,7 @@ proptest! {
             inside.map(|leg| [leg[0], leg[1]])
         };
         for (i, k) in (0..4).flat_map(|i| (0..3).map(move |k| (i, k))) {
+            let Quadrature { x: zx, y: zy } = &quadratures[k];
             let edge = |z: usize, time: f64| {
                 let [_, px, py, r] = row_at(&rows, time);
                 let scale = now * (1.0 - time / 0.4).max(0.0) + scales[i] * time / 4.8;

@@ -53,6 +53,11 @@ impl Walked<'_> {
     /// The forecast. If there is a flow, it states which certificates hold.
     pub(crate) fn forecast(mut self) -> Result<Forecast, ForecastError> {
         let rolled_out = std::mem::take(&mut self.rolled_out);
+        self.walked(rolled_out)
+    }
+
+    /// The forecast, where the network's own rollout goes along these paths.
+    pub(crate) fn walked(&self, rolled_out: Vec<Position>) -> Result<Forecast, ForecastError> {
         if self.factors.is_none() {
             return self.at(rolled_out);
         }

@@ -9,7 +9,7 @@ use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError, HORIZON, PedestrianName, Position, Spread, TIME_STEP, Window};
-use ddl_scene::{Futures, JointMixture, Plan, SceneError};
+use ddl_scene::{Futures, JointMixture, JointScene, Plan, SceneError, ScenePart};
 
 /// A plan that the pedestrians of a scene respond to.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,17 +20,23 @@ pub struct GivenPlan {
     pub ego: Option<PedestrianName>,
 }
 
-impl Walked<'_> {
-    /// The same pedestrians with joint futures instead of hypotheses.
-    fn joint(mut self, given: Option<&GivenPlan>) -> Result<Self, ForecastError> {
-        if self.hypotheses > JointMixture::MOST_HYPOTHESES {
-            let (found, most) = (self.hypotheses, JointMixture::MOST_HYPOTHESES);
+/// Joint futures instead of hypotheses, with what they were drawn from.
+struct JointWalks<'a> {
+    walked: Walked<'a>,
+    parts: Vec<ScenePart>,
+    hypotheses: Forecast,
+}
+
+impl<'a> Walked<'a> {
+    fn joint(mut self, given: Option<&GivenPlan>) -> Result<JointWalks<'a>, ForecastError> {
+        if self.hypotheses > JointScene::MOST_HYPOTHESES {
+            let (found, most) = (self.hypotheses, JointScene::MOST_HYPOTHESES);
             return Err(ForecastError::model(NAME, SceneError::Hypotheses { found, most }));
         }
-        let paths = std::mem::take(&mut self.rolled_out);
-        let marginal = self.at(paths)?;
-        let ego = self.ego(given);
-        let mixture = JointMixture::of(self.window, &marginal, given.map(|given| &given.plan), ego);
+        let rolled_out = std::mem::take(&mut self.rolled_out);
+        let marginal = self.walked(rolled_out)?;
+        let scene = JointScene::of(self.window, &marginal, given.map(|given| &given.plan), self.ego(given));
+        let (mixture, parts) = (scene.mixture(), scene.parts());
         let pairs = self.window.len() * self.hypotheses;
         let steps = || (0..pairs).flat_map(|pair| (0..HORIZON).map(move |t| (pair, t)));
         if self.factors.is_none() {
@@ -46,7 +52,7 @@ impl Walked<'_> {
         self.goals = goals.collect();
         self.weights = mixture.weights.repeat(self.window.len());
         self.spread = spread(&marginal, &mixture);
-        Ok(self)
+        Ok(JointWalks { walked: self, parts, hypotheses: marginal })
     }
 
     fn ego(&self, given: Option<&GivenPlan>) -> Option<usize> {
@@ -56,21 +62,21 @@ impl Walked<'_> {
     /// The joint futures of these pedestrians, as an answer; the ego, if it is in the window, follows the plan in all
     /// of them.
     pub(crate) fn joint_answer(self, given: Option<&GivenPlan>, certificates: bool) -> Result<Answer, ForecastError> {
-        let window = self.window;
-        let joint = self.joint(given)?;
-        let ego = joint.ego(given);
+        let (window, ego) = (self.window, self.ego(given));
+        let JointWalks { walked, parts, mut hypotheses } = self.joint(given)?;
         let plan = given.map(|given| given.plan.clone());
-        let (mut forecast, certificates) = joint.certified(certificates)?;
+        let (mut forecast, certificates) = walked.certified(certificates)?;
         if let (Some(ego), Some(plan)) = (ego, &plan) {
-            forecast = forecast.with_path(ego, &planned(plan));
+            [forecast, hypotheses] = [forecast, hypotheses].map(|forecast| forecast.with_path(ego, &planned(plan)));
         }
-        Ok(Answer::of_scene(futures(window, forecast, plan)?, certificates))
+        let futures = Futures::of_parts(window, parts, hypotheses, forecast, plan);
+        Ok(Answer::of_scene(futures.map_err(|error| ForecastError::model(NAME, error))?, certificates))
     }
 }
 
-/// The futures of a joint forecast.
-pub(crate) fn futures(window: &Window, forecast: Forecast, plan: Option<Plan>) -> Result<Futures, ForecastError> {
-    Futures::new(window, forecast, plan).map_err(|error| ForecastError::model(NAME, error))
+/// The futures of a joint forecast, where nothing else is known.
+pub(crate) fn futures(window: &Window, forecast: Forecast) -> Result<Futures, ForecastError> {
+    Futures::new(window, forecast, None).map_err(|error| ForecastError::model(NAME, error))
 }
 
 /// Where a plan is at the 12 steps, metres.

@@ -130,7 +130,7 @@ impl Ddl {
                 if !request.is_joint() {
                     return Ok(forecast.into());
                 }
-                Ok(Answer::of_scene(joint::futures(window, forecast, None)?, Vec::new()))
+                Ok(Answer::of_scene(joint::futures(window, forecast)?, Vec::new()))
             });
             return answers.collect();
         }
