@@ -59,7 +59,9 @@ impl Hypotheses {
     /// An order that depends on what they may do alone, by distances and weights, which a turned scene has too.
     pub(crate) fn compare(&self, other: &Self) -> Ordering {
         let weights = || self.weights.iter().zip(&other.weights).map(|(a, b)| a.total_cmp(b));
-        self.reach.total_cmp(&other.reach).then_with(|| weights().find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
+        self.reach
+            .total_cmp(&other.reach)
+            .then_with(|| weights().find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
     }
 
     /// Number of hypotheses, K.

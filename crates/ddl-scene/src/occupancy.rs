@@ -229,7 +229,8 @@ fn free_of_part(area: &Area, row: usize, part: &ScenePart, bodies: &[OccupyingBo
         let first = some.clone().map(|(columns, _)| columns.start).min().unwrap_or(0);
         let end = some.map(|(columns, _)| columns.end).max().unwrap_or(0);
         let mut probabilities = vec![0.0; end.saturating_sub(first)];
-        for (h, (columns, &share)) in columns.into_iter().zip(&body.shares).enumerate().filter(|(_, (_, s))| **s > 0.0) {
+        for (h, (columns, &share)) in columns.into_iter().zip(&body.shares).enumerate().filter(|(_, (_, s))| **s > 0.0)
+        {
             for column in columns {
                 probabilities[column - first] += share * body.mass(h, area.centre([column, row]));
             }

@@ -23,7 +23,7 @@ mod tests;
 
 use crate::{energy::Energy, error::SceneError, futures::Futures, plan::Plan};
 use course::legs;
-use crowd::{CrowdAtRisk, Sweep};
+use crowd::{CrowdAtRisk, Hits, Sweep};
 use ddl_core::HORIZON;
 use quadrature::DEVIATIONS;
 pub(crate) use quadrature::probability;
@@ -156,7 +156,7 @@ impl Futures {
         });
         // Somebody is surely nearer than this.
         let most = |distances: &Vec<[f64; DEVIATIONS]>| distances.as_flattened().iter().copied().fold(0.0, f64::max);
-        let width = distances.iter().map(most).fold(f64::INFINITY, f64::min) / CELLS as f64;
+        let width = (distances.iter().map(most).fold(f64::INFINITY, f64::min) / CELLS as f64).max(f64::MIN_POSITIVE);
         let mut farther = [1.0; CELLS];
         for (part, members) in crowd.by_part(0..self.pedestrians()) {
             let farther_of = |i: usize| distances[i].iter().map(|distances| farther_shares(distances, width)).collect();
@@ -192,23 +192,31 @@ fn farther_shares(distances: &[f64; DEVIATIONS], width: f64) -> [f64; CELLS] {
 type StayingAway = [f64; 2 * HORIZON];
 
 /// Of each hypothesis of pedestrian `i`; `None` if all surely do. People who are close already cannot keep away. The
-/// odds that the others come close are multiplied by a factor; the probability that they do so by an earlier step falls
-/// in proportion.
+/// odds that a pedestrian comes close later are multiplied by a factor; the probability that it does so by an earlier
+/// step, or on one of its hypotheses, falls in proportion.
 fn staying_away(crowd: &CrowdAtRisk, sweep: &Sweep, i: usize, odds: f64) -> Option<Vec<StayingAway>> {
-    let mut some = false;
-    let of_hypothesis = |(h, share): (usize, &f64)| {
-        let Some(hits) = (*share > 0.0).then(|| crowd.hits(sweep, i, h)).flatten() else { return [1.0; 2 * HORIZON] };
-        some = true;
-        let [close_now, close_later] = hits.until[HORIZON - 1];
-        let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
-        let reduction = odds / (1.0 - of_others + of_others * odds);
-        let close = hits.steps.iter().chain(&hits.until).map(|[now, later]| now + reduction * later);
+    let shares = &crowd.shares[i];
+    let hits = shares.iter().enumerate().map(|(h, share)| (*share > 0.0).then(|| crowd.hits(sweep, i, h)).flatten());
+    let hits: Vec<Option<Hits>> = hits.collect();
+    if hits.iter().all(Option::is_none) {
+        return None;
+    }
+    let mut close = [0.0; 2];
+    for (share, hits) in shares.iter().zip(&hits).filter_map(|(share, hits)| Some((share, hits.as_ref()?))) {
+        for (sum, of_hypothesis) in close.iter_mut().zip(hits.until[HORIZON - 1]) {
+            *sum += share * of_hypothesis;
+        }
+    }
+    let of_others = close[1] / f64::max(1.0 - close[0], f64::MIN_POSITIVE);
+    let reduction = odds / (1.0 - of_others + of_others * odds);
+    let away = |hits: Option<Hits>| {
         let mut away = [1.0; 2 * HORIZON];
-        for (away, close) in away.iter_mut().zip(close) {
-            *away -= close;
+        for (away, [now, later]) in
+            away.iter_mut().zip(hits.iter().flat_map(|hits| hits.steps.iter().chain(&hits.until)))
+        {
+            *away -= now + reduction * later;
         }
         away
     };
-    let all = crowd.shares[i].iter().enumerate().map(of_hypothesis).collect();
-    some.then_some(all)
+    Some(hits.into_iter().map(away).collect())
 }

@@ -21,7 +21,8 @@ pub(crate) fn samples(people: &[Hypotheses], pairs: &[Pair], numbers: &[u64], co
         let order = shuffled(&mut random(numbers[i], sweep), count);
         order.into_iter().map(|s| (s as f32 + 0.5) / count as f32).collect::<Vec<f32>>()
     };
-    let first = |(i, one): (usize, &Hypotheses)| draws(i, 0).into_iter().map(|share| draw(&one.weights, share)).collect();
+    let first =
+        |(i, one): (usize, &Hypotheses)| draws(i, 0).into_iter().map(|share| draw(&one.weights, share)).collect();
     let mut chosen: Vec<Vec<u8>> = people.iter().enumerate().map(first).collect();
     let neighbours = neighbours(people.len(), pairs);
     let mut product = Vec::new();

@@ -1,8 +1,11 @@
 //! Laws of joint futures.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianId, PedestrianNames, Position, Window, between, distance};
-use ddl_scene::{JointMixture, JointScene, Plan, PlanPoint, groups};
+use ddl_core::{
+    FRAME_LIMIT, Forecast, HORIZON, Pace, PedestrianId, PedestrianNames, Position, RegionTable, Spread, Window,
+    between, distance,
+};
+use ddl_scene::{Area, Futures, JointMixture, JointScene, Plan, PlanPoint, groups};
 use proptest::{collection::vec, prelude::*};
 
 /// Directions of the hypotheses relative to the way on (radians), and their weights.
@@ -75,6 +78,40 @@ fn least(a: &[Position], b: &[Position]) -> f64 {
     places(a).into_iter().zip(places(b)).map(|(p, q)| distance(p, q)).fold(f64::INFINITY, f64::min)
 }
 
+/// The scene of these people with a spread that grows to 0.6 m.
+fn futures(people: &[Person], ids: &[i64]) -> Futures {
+    let (window, forecast) = scene(people, ids);
+    let spread = Spread {
+        scales: (0..people.len()).flat_map(|_| (1..=HORIZON).map(|t| 0.05 * t as f64)).collect(),
+        paces: vec![Pace::Walking; people.len()],
+        regions: RegionTable::of(&[&[[1.0; HORIZON]; 9]; 3], &[0.5]).unwrap().into(),
+    };
+    let forecast = forecast.with_spread(spread.clone()).unwrap();
+    let scene = JointScene::of(&window, &forecast, None, None);
+    let mixture = scene.mixture();
+    let paths = (0..people.len() * K).flat_map(|pair| path(&forecast, &mixture, pair / K, pair % K)).collect();
+    let drawn = Forecast::new(people.len(), K, paths, mixture.weights.repeat(people.len()), None).unwrap();
+    let (parts, drawn) = (scene.parts(), drawn.with_spread(spread).unwrap());
+    Futures::of_parts(&window, parts, forecast, drawn, None).unwrap()
+}
+
+/// What planners ask about the first pedestrians of a scene: the risk of plans that pass there, with that of each of
+/// these pedestrians, how near they are, and a grid of the place.
+fn answers(futures: &Futures, first: usize) -> (Vec<Vec<f64>>, Vec<f32>) {
+    let plan = |[x, y]: Position| {
+        let row = |(time, position)| PlanPoint { time, position, radius: 0.3 };
+        Plan::new([(0.0, [x, y]), (4.8, [-y, x])].map(row).to_vec()).unwrap()
+    };
+    let plans = [[3.0, 1.0], [-2.0, 4.0], [0.5, -1.0]].map(plan);
+    let risks = [futures.risks(&plans, 0.5, None).unwrap(), futures.risks_if_seen(&plans, 0.5, None).unwrap()].concat();
+    let numbers = risks.iter().map(|risk| [&risk.until[..], &risk.steps, &risk.pedestrians[..first]].concat());
+    let clearances = futures.clearances(&plans).unwrap();
+    let near = clearances.iter().map(|near| [&[near.nearest], &near.pedestrians[..first]].concat());
+    let area = Area::new([-8.0; 2], [8.0; 2], 0.5).unwrap();
+    let grids = futures.occupancy(&area, &[0.0, 2.0, 4.8], 0.2).unwrap();
+    (numbers.chain(near).collect(), grids.flat_map(|grid| grid.probabilities).collect())
+}
+
 fn crowd() -> impl Strategy<Value = Vec<Person>> {
     let person = ([-6.0..6.0f64, -6.0..6.0f64], 0.0..6.2f64, 0.3..1.6f64);
     vec(person, 2..9)
@@ -82,6 +119,30 @@ fn crowd() -> impl Strategy<Value = Vec<Person>> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
+
+    /// Not a bit of any answer changes if others come, go or move beyond reach.
+    #[test]
+    fn who_is_out_of_reach_does_not_matter(people in crowd(), others in crowd(), away in 80.0..1e6f64, first in 0..9i64) {
+        let ids = |count: usize, from: i64| (0..count as i64).map(move |i| 2 * i + from);
+        let own: Vec<i64> = ids(people.len(), 1).collect();
+        let alone = futures(&people, &own);
+        let far = others.iter().map(|&([x, y], heading, speed)| ([x + away, y - 2.0 * away], heading, speed));
+        let both: Vec<Person> = people.iter().copied().chain(far).collect();
+        let all: Vec<i64> = own.iter().copied().chain(ids(others.len(), 2 * first)).collect();
+        let together = futures(&both, &all);
+        prop_assert_eq!(answers(&alone, people.len()), answers(&together, people.len()));
+        prop_assert_eq!(alone.parts(), &together.parts()[..alone.parts().len()]);
+    }
+
+    /// Who has which name changes nothing.
+    #[test]
+    fn names_do_not_matter(people in crowd(), turn in 1..8usize) {
+        let ids: Vec<i64> = (0..people.len() as i64).collect();
+        let mut renamed = ids.clone();
+        renamed.rotate_left(turn % people.len());
+        let of = |ids: &[i64]| answers(&futures(&people, ids), people.len());
+        prop_assert_eq!(of(&ids), of(&renamed));
+    }
 
     #[test]
     fn weights_and_shares_are_probabilities(people in crowd()) {
@@ -193,6 +254,12 @@ fn one_pedestrian_has_its_hypotheses() {
     for k in 0..K {
         assert_eq!(path(&forecast, &mixture, 0, k), forecast.hypothesis(0, k));
     }
+    // And in a scene with others, whom it cannot meet: a part is what it may do alone.
+    let others = [([40.0, 2.0], 0.0, 1.0), person, ([41.0, 3.0], 3.0, 1.2)];
+    let futures = futures(&others, &[3, 1, 2]);
+    let parts: Vec<&[usize]> = futures.parts().iter().map(|part| part.pedestrians()).collect();
+    assert_eq!(parts, [&[0, 2][..], &[1]]);
+    assert_eq!(answers(&futures.of_pedestrians(&[1]), 1), answers(&self::futures(&[person], &[7]), 1));
 }
 
 /// Rows without a position often are at (0, 0): hundreds of people at one place.

@@ -53,10 +53,9 @@ def scene(rng, size, deviation, ego):
     reach = case["within"] + max(row[3] for row in case["plan"])
     odds = [np.exp(-np.interp(reach, AVOIDANCE["within"], AVOIDANCE[kind])) for kind in ("strangers", "companions")]
     together = set() if ego is None else companions(case)
-    results = {"unseen": np.zeros(n + 24), "seen": np.zeros(n + 24)}
-    clearances, nearest = np.zeros(n), 0
+    # Of each pedestrian and future: probabilities to be close of those who are now, and of others.
+    close, clearances, nearest = np.zeros((n, k, 2, 24)), np.zeros(n), 0
     for future in range(k):
-        nobody = {name: np.ones(24) for name in results}
         far = np.full(DRAWS, np.inf)
         for i in range(n):
             z = rng.standard_normal((DRAWS, 2)) * np.sqrt(3 / rng.chisquare(3, DRAWS))[:, None]
@@ -64,22 +63,24 @@ def scene(rng, size, deviation, ego):
             edge = np.maximum(gaps.min((0, 1)), 0)
             far = np.minimum(far, edge)
             clearances[i] += weights[future] * edge.mean()
-            if i == ego:
-                continue
             now = gaps[0, 0] <= case["within"]
             during = gaps.min(1) <= case["within"]
-            close = np.concatenate([during, np.logical_or.accumulate(during)])
-            later = (close & ~now).mean(1)
-            share = later[-1] / max(1 - now.mean(), 1e-300)
-            for name, factor in (("unseen", 1.0), ("seen", odds[int(i in together)])):
-                # The odds of who is not close now are multiplied by the factor.
-                reduction = factor / (1 - share + share * factor)
-                probabilities = (close & now).mean(1) + reduction * later
-                nobody[name] *= 1 - probabilities
-                results[name][i] += weights[future] * probabilities[-1]
-        for name, empty in nobody.items():
-            results[name][n:] += weights[future] * (1 - empty)
+            both = np.concatenate([during, np.logical_or.accumulate(during)])
+            close[i, future] = [(both & now).mean(1), (both & ~now).mean(1)]
         nearest += weights[future] * far.mean()
+    results = {}
+    for name in ("unseen", "seen"):
+        probabilities, nobody = np.zeros(n), np.ones((k, 24))
+        for i in set(range(n)) - {ego}:
+            # The odds of who is not close now are multiplied by the factor.
+            factor = 1.0 if name == "unseen" else odds[int(i in together)]
+            now, later = weights @ close[i, :, :, -1]
+            share = later / max(1 - now, 1e-300)
+            reduction = factor / (1 - share + share * factor)
+            of_futures = close[i, :, 0] + reduction * close[i, :, 1]
+            nobody *= 1 - of_futures
+            probabilities[i] = weights @ of_futures[:, -1]
+        results[name] = np.concatenate([probabilities, weights @ (1 - nobody)])
     case |= {name: np.round(values, 4).tolist() for name, values in results.items()}
     return case | {"clearances": np.round(clearances, 4).tolist(), "nearest": round(nearest, 4)}
 

@@ -5,7 +5,7 @@ use crate::tracks::moment::Moment;
 use ddl_core::{Disc, Forecast, HORIZON, PedestrianName};
 use ddl_data::{FrameNumber, SceneName};
 use ddl_dynamics::{LyapunovCertificate, Violation};
-use ddl_scene::Futures;
+use ddl_scene::{Futures, ScenePart};
 use serde::Serialize;
 
 /// What is known of a moment.
@@ -34,6 +34,8 @@ struct SceneLine<'a> {
     pedestrians: Vec<ObservedPedestrian>,
     /// Names of pedestrians who walk together.
     groups: Vec<Vec<PedestrianName>>,
+    /// Names of pedestrians who may influence each other; different parts are independent.
+    parts: Vec<Vec<PedestrianName>>,
     futures: Vec<Future<'a>>,
 }
 
@@ -187,12 +189,15 @@ fn scene_line<'a>(moment: &Moment<'a>, regions: &[f64]) -> SceneLine<'a> {
         weight: forecast.weight(0, k),
         paths: pedestrians.clone().map(|i| PathLine::of(moment, i, k)).collect(),
     });
-    let groups = moment.answer.futures().map_or(&[][..], Futures::groups);
+    let futures_of_scene = moment.answer.futures().ok();
+    let parts = futures_of_scene.map_or(&[][..], Futures::parts).iter().map(ScenePart::pedestrians);
+    let names = |members: &[usize]| members.iter().map(|&i| moment.window.name(i)).collect();
     SceneLine {
         moment: MomentHead::of(moment),
         frames: moment.frames(),
         futures: futures.collect(),
-        groups: groups.iter().map(|group| group.iter().map(|&i| moment.window.name(i)).collect()).collect(),
+        groups: futures_of_scene.map_or(&[][..], Futures::groups).iter().map(|group| names(group)).collect(),
+        parts: parts.map(names).collect(),
         pedestrians: pedestrians.map(|i| ObservedPedestrian::of(moment, i, regions)).collect(),
     }
 }
