@@ -40,10 +40,11 @@ impl GoldenScene {
         let [seen, unseen] = [futures.risks_if_seen(&plans, 0.5, None), futures.risks(&plans, 0.5, None)]
             .map(|risks| risks.unwrap().into_iter().map(|risk| risk.total));
         let nearest = futures.clearances(&plans).unwrap().into_iter().map(|clearance| clearance.nearest);
-        let likeliest = answer.forecast().most_likely(0);
+        let forecast = answer.forecast();
+        let likeliest = forecast.most_likely(0);
         Self {
-            weights: (0..futures.count()).map(|k| futures.weight(k)).collect(),
-            ends: (0..futures.pedestrians()).map(|i| futures.position(i, likeliest, 4.8)).collect(),
+            weights: (0..forecast.hypotheses()).map(|k| forecast.weight(0, k)).collect(),
+            ends: (0..forecast.pedestrians()).map(|i| forecast.hypothesis(i, likeliest)[11]).collect(),
             risks: seen.zip(unseen).zip(nearest).map(|((seen, unseen), nearest)| [seen, unseen, nearest]).collect(),
         }
     }
