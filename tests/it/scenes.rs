@@ -178,6 +178,26 @@ fn renamed(rows: &[Row], names: [i64; 4]) -> Vec<Row> {
     rows.iter().map(|&(t, name, x, y)| (t, names[name as usize - 1], x, y)).collect()
 }
 
+/// A false track of two rows in a stream of two people.
+#[test]
+fn somebody_far_away_costs_no_grid() {
+    let place = Place::empty();
+    let far = [(4, 9, 2000.0, 2000.0), (5, 9, 2000.0, 2000.4)];
+    let people: Vec<Row> = rows().into_iter().filter(|row| row.1 < 3).collect();
+    let with_far: Vec<Row> = people.iter().chain(&far).copied().collect();
+    let grids = |rows: &[Row]| {
+        let mut rows = rows.to_vec();
+        rows.sort_by_key(|row| (row.0, row.1));
+        place.run_on(&own_tracks::csv(&rows), "occupancy - --fps 2.5 --every 4.8 --cell 0.2")
+    };
+    let (told, alone) = (grids(&with_far), grids(&people));
+    let sizes =
+        |text: &str| -> Vec<Value> { json_lines(text).iter().map(|grid: &Value| grid["info"].clone()).collect() };
+    assert_eq!(told.stderr.matches("the grids leave out 1 of 3 pedestrians, first 9: they are").count(), 1, "{told:?}");
+    assert!(!alone.stderr.contains("leave out"));
+    assert_eq!(sizes(&told.succeeds()), sizes(&alone.succeeds()));
+}
+
 #[test]
 fn occupancy_has_the_formats_of_maps() {
     let place = place();

@@ -184,15 +184,15 @@ impl ShownAnswer {
     pub(crate) fn compute_occupancy(&mut self, cells: &ddl_cells<'_>) -> Result<(), CallFailure> {
         let (held, futures) = joint(self.held.as_ref())?;
         let threads = Arc::clone(&held.threads);
+        let times = Occupancy::every(cells.every).map_err(CallFailure::invalid)?;
         let area = match cells.corners {
             Some(corners) => {
                 let [low, high] = corners.map(|corner| [corner.x, corner.y]);
-                Area::new(low, high, cells.cell)
+                Area::new(low, high, cells.cell).map(|area| (area, Vec::new()))
             }
-            None => futures.area(cells.margin, cells.cell),
+            None => futures.area(cells.margin, cells.cell, times.len()),
         };
-        let area = area.map_err(CallFailure::invalid)?;
-        let times = Occupancy::every(cells.every).map_err(CallFailure::invalid)?;
+        let (area, left_out) = area.map_err(CallFailure::invalid)?;
         let [width, height] = area.size();
         area.ensure_kept(times.len()).map_err(CallFailure::invalid)?;
         threads.run(|| {
@@ -210,6 +210,7 @@ impl ShownAnswer {
             height,
             origin: ddl_point { x, y },
             cell: area.cell(),
+            outside: left_out.len(),
             time: address(&self.times),
             probabilities: address(&self.probabilities),
         };

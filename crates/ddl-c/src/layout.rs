@@ -189,6 +189,8 @@ pub struct ddl_occupancy {
     pub origin: ddl_point,
     /// Side of a cell, metres.
     pub cell: f64,
+    /// Number of pedestrians who are too far from the others for the area; 0 where corners are given.
+    pub outside: usize,
     /// `[times]`: seconds after the moment.
     pub time: *const f64,
     /// `[times][height][width]`, the row of the lowest y first.

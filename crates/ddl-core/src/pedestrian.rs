@@ -6,6 +6,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::position::is_frame;
+
 /// The number of a pedestrian, unique only within its recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -28,13 +30,17 @@ pub enum PedestrianName {
 }
 
 impl PedestrianName {
-    /// Interprets a text: a number if it is written as that number is printed, else a word.
+    /// Interprets a text, in files and streams alike: a number where programs print it so, as `12`, or with a decimal
+    /// point, as `12.0` and `1.2e1`; else a word, as `007`, `1e3`, `+5` and numbers from 2^53 on.
     #[must_use]
     pub fn of_text(text: &str) -> Self {
-        match text.parse::<i64>() {
-            Ok(number) if is_plain(text) => Self::Number(number),
-            _ => Self::Word(text.to_owned()),
-        }
+        let of_float = || {
+            let number = text.parse::<f64>().ok().filter(|number| number.fract() == 0.0 && text.contains('.'))?;
+            // Within the limit of frames every whole `f64` is exactly an `i64`.
+            Some(number as i64)
+        };
+        let number = text.parse::<i64>().ok().or_else(of_float).filter(|number| is_plain(text) && is_frame(*number));
+        number.map_or_else(|| Self::Word(text.to_owned()), Self::Number)
     }
 }
 
@@ -53,10 +59,11 @@ impl fmt::Display for PedestrianName {
     }
 }
 
-/// Whether a whole number is written as it is printed, without `+`, leading zeros or decimals.
+/// Whether a number is written as it is printed, without `+`, `-0` or leading zeros.
 fn is_plain(number: &str) -> bool {
-    let digits = number.strip_prefix('-').unwrap_or(number);
-    digits.bytes().all(|byte| byte.is_ascii_digit()) && (number == "0" || !digits.starts_with('0'))
+    let (digits, is_negative) = number.strip_prefix('-').map_or((number, false), |digits| (digits, true));
+    let is_zero = digits == "0" && !is_negative;
+    is_zero || digits.starts_with("0.") || digits.starts_with(|first| matches!(first, '1'..='9'))
 }
 
 /// The words that a recording or window uses for its pedestrians; empty where the file uses numbers.
@@ -90,14 +97,13 @@ impl PedestrianNames {
         }
     }
 
-    /// Whether a pedestrian has this name, in any spelling of a number.
+    /// Whether a pedestrian has this name; JSON may quote a number.
     pub(crate) fn names(&self, id: PedestrianId, name: &PedestrianName) -> bool {
         match (self.word(id), name) {
             (None, PedestrianName::Number(number)) => id.0 == *number,
             (Some(word), PedestrianName::Word(name)) => word == name,
             (Some(word), PedestrianName::Number(number)) => word == number.to_string(),
-            #[expect(clippy::float_cmp, reason = "whole numbers below 2^53 are exact")]
-            (None, PedestrianName::Word(name)) => name.parse::<f64>().is_ok_and(|number| number == id.0 as f64),
+            (None, PedestrianName::Word(name)) => PedestrianName::of_text(name) == id.into(),
         }
     }
 }
@@ -109,8 +115,18 @@ mod tests {
 
     proptest! {
         #[test]
-        fn numbers_and_words_come_back_as_they_were_written(text in "[-+0-9a-c.]{1,5}") {
+        fn names_come_back_as_they_were_written(text in "[-+ 0-9a-ce]{1,5}", number: i64) {
             prop_assert_eq!(PedestrianName::of_text(&text).to_string(), text);
+            let read = PedestrianName::of_text(&number.to_string());
+            prop_assert_eq!(matches!(read, PedestrianName::Number(read) if read == number), is_frame(number));
+        }
+
+        #[test]
+        fn floats_are_the_numbers_that_they_print(number in -100_000_000..100_000_000_i64) {
+            let float = number as f64;
+            for text in [format!("{float:.1}"), format!("{float:.18}"), format!("{float:.8e}")] {
+                prop_assert_eq!(PedestrianName::of_text(&text), PedestrianName::Number(number), "{}", text);
+            }
         }
     }
 }

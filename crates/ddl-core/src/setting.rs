@@ -8,6 +8,7 @@ use std::sync::{PoisonError, RwLock};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "fields by their names")]
 pub enum Setting {
+    Area,
     Columns,
     Convention,
     Data,
@@ -48,6 +49,7 @@ impl Setting {
     /// The name of the field, in lower case with underscores.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Area => "area",
             Self::Columns => "columns",
             Self::Convention => "convention",
             Self::Data => "data",

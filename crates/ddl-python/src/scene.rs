@@ -101,23 +101,24 @@ impl FuturesHandle {
         Ok([array(py, nearest.collect(), [count])?, array(py, of_each.collect(), [count, people])?])
     }
 
-    /// Probabilities `(times, height, width)`, times, and the lowest corner, of an area or of all paths and a margin.
+    /// Probabilities `(times, height, width)`, times, and the lowest corner, of an area or of all paths and a margin;
+    /// and how many are too far from the others for that.
     fn occupancy(
         &self,
         py: Python<'_>,
         options: (f64, f64, f64, f64),
         area: Option<[f64; 4]>,
-    ) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2])> {
+    ) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2], usize)> {
         let (cell, every, radius, margin) = options;
         let futures = self.futures.clone();
+        let times = Occupancy::every(every).map_err(of_any)?;
         let area = match (area, &futures) {
-            (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell),
-            (None, Some(futures)) => futures.area(margin, cell),
+            (Some([x0, y0, x1, y1]), _) => Area::new([x0, y0], [x1, y1], cell).map(|area| (area, Vec::new())),
+            (None, Some(futures)) => futures.area(margin, cell, times.len()),
             (None, None) => return Err(PyValueError::new_err("no pedestrian could be forecast: give area=")),
         };
         not_negative("radius", radius)?;
-        let area = area.map_err(of_any)?;
-        let times = Occupancy::every(every).map_err(of_any)?;
+        let (area, left_out) = area.map_err(of_any)?;
         area.ensure_kept(times.len()).map_err(of_any)?;
         let [width, height] = area.size();
         let grids = run(py, {
@@ -131,7 +132,7 @@ impl FuturesHandle {
             }
         })?;
         let grids: Vec<f32> = grids.map_err(|error: ddl::scene::SceneError| of_any(error))?;
-        Ok((array(py, grids, [times.len(), height, width])?, times, area.origin()))
+        Ok((array(py, grids, [times.len(), height, width])?, times, area.origin(), left_out.len()))
     }
 
     /// How a pickle makes it again.

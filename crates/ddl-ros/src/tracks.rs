@@ -3,7 +3,7 @@
 use crate::cdr::{Message, read};
 use crate::error::RosError;
 use crate::msg::{Detection3DArray, Header, People, Point, TrackedPersons};
-use ddl_core::{COORDINATE_LIMIT, Numbering, PedestrianId, PedestrianName, PedestrianNames, Position, is_frame};
+use ddl_core::{COORDINATE_LIMIT, Numbering, PedestrianId, PedestrianName, PedestrianNames, Position};
 use std::collections::BTreeMap;
 
 /// The pedestrians of one message.
@@ -50,8 +50,8 @@ impl Observed {
         let mut words = BTreeMap::new();
         let seen = self.pedestrians.iter().map(|SeenPedestrian { name, position, .. }| {
             let id = match PedestrianName::of_text(name) {
-                PedestrianName::Number(number) if is_frame(number) => PedestrianId(number),
-                _ => {
+                PedestrianName::Number(number) => PedestrianId(number),
+                PedestrianName::Word(_) => {
                     let (id, word) = numbering.number(name);
                     words.insert(id, word);
                     id

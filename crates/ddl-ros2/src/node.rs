@@ -6,10 +6,10 @@ use crate::options::NodeArguments;
 use crate::place::WatchedPlace;
 use crate::tell;
 use crate::transforms::{Transforms, moved};
-use anyhow::{Context as _, anyhow};
-use ddl::Answer;
+use anyhow::Context as _;
 use ddl::data::{TIME_STEP, Window, is_vehicle};
 use ddl::scene::{Area, Occupancy};
+use ddl::{Answer, Note};
 use ddl_ros::msg::{Forecasts, Header};
 use ddl_ros::{ForecastMessages, Observed, Tracks, occupancy_grid};
 use ros2_client::{Gid, MessageInfo, ROSTime, SystemTime};
@@ -145,15 +145,14 @@ impl Forecasting<'_> {
             return Ok(());
         }
         let futures = answer.futures()?;
-        let around = || futures.area(MARGIN, self.options.cell);
-        let area = match (self.fixed_area.map_or_else(around, Ok), self.last_area) {
-            // Somebody far away: a costmap must not keep an old grid.
-            (Err(error), Some(last)) => {
-                self.health.fault(&anyhow!("the grids keep their last area: {error}"));
-                last
-            }
-            (area, _) => *self.last_area.insert(area?),
+        let (area, left_out) = match self.fixed_area {
+            Some(area) => (area, Vec::new()),
+            None => futures.area(MARGIN, self.options.cell, self.options.grids.len())?,
         };
+        self.last_area = Some(area);
+        if let Some(note) = Note::outside_area(&left_out, window) {
+            self.health.warn(&note.to_string());
+        }
         let grids = futures.occupancy(&area, &self.options.grids, Occupancy::BODY)?;
         for (grid, output) in grids.zip(&outputs.grids) {
             publish(output, occupancy_grid(&grid, header))?;

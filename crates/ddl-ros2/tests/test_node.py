@@ -331,7 +331,7 @@ def test_a_flood_is_forecast_reported_and_ended(robot):
     for k in range(10):
         writer.write(people(100 + 0.1 * k, near | ({"far": (3000, 4000)} if k > 6 else {})))
         until(lambda: len(grids.read(N=100)) >= k)
-    assert "the grids keep their last area" in robot.told()
+    assert "the grids leave out 1 of 41 pedestrians, first far" in robot.told()
     forecasts.take(N=1000)
     crowd = {str(i): (i % 20, i // 20) for i in range(150)}
     end, k = time.monotonic() + 5, 0

@@ -107,7 +107,7 @@ impl<'a> JointScene<'a> {
         let mut tracks: Vec<Option<&[Position]>> = order.iter().map(|&i| Some(window.observed(i))).collect();
         if let Some(plan) = plan {
             let path = std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position);
-            let radius = plan.points().iter().map(|point| point.radius).fold(0.0, f64::max);
+            let radius = plan.largest_radius();
             if let Some(ego) = ego.and_then(|ego| order.iter().position(|&i| i == ego)) {
                 people[ego] = Hypotheses::certain(people[ego].present, &path, radius);
             } else {

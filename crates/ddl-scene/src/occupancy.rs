@@ -13,13 +13,14 @@
 //!
 //! At the moment itself the spread is 0, and the discs are those of the present positions.
 
+mod around;
 mod files;
 mod mass;
 #[cfg(test)]
 mod tests;
 
 use crate::{error::SceneError, futures::Futures, parts::ScenePart};
-use ddl_core::{HORIZON, Position, TIME_STEP, bounds};
+use ddl_core::{HORIZON, Position, TIME_STEP};
 use mass::MassTable;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -42,6 +43,8 @@ pub struct Area {
 impl Area {
     /// The most cells of an area. Its grid takes 4 bytes for each.
     pub const MOST_CELLS: usize = 50_000_000;
+    /// The most cells of an area that nobody gives, around several pedestrians: 200 x 200 m in cells of 0.1 m.
+    pub const MOST_AROUND: usize = 4_000_000;
 
     /// The area from one corner to the other (m), in cells of this size (m); larger by less than a cell if the cells do
     /// not fit.
@@ -122,22 +125,6 @@ impl Occupancy {
 }
 
 impl Futures {
-    /// The smallest area around all paths, wider by a margin (m) on every side, in cells of this size (m).
-    ///
-    /// # Errors
-    /// The margin is negative or not finite; as [`Area::new`].
-    pub fn area(&self, margin: f64, cell: f64) -> Result<Area, SceneError> {
-        check("the margin", margin, margin >= 0.0, "a number of metres, 0 or more")?;
-        let count = self.hypotheses().hypotheses();
-        let pairs = (0..count).flat_map(|k| (0..self.pedestrians()).map(move |i| (i, k)));
-        let paths = pairs.flat_map(|(i, k)| self.hypotheses().hypothesis(i, k)).copied();
-        let places = paths.chain((0..self.pedestrians()).map(|i| self.present(i)));
-        let [low, high] = bounds(places).unwrap_or_default();
-        let low = low.map(|coordinate| coordinate - margin);
-        // Somebody who stands still, without a margin.
-        Area::new(low, [0, 1].map(|axis| (high[axis] + margin).max(low[axis] + cell)), cell)
-    }
-
     /// One grid for each time (s after the moment), computed when the iterator arrives at it, in parallel. A body is a
     /// disc of the radius `body` (m); [`BODY`](Occupancy::BODY) if nothing else is known.
     ///

@@ -4,6 +4,9 @@ use crate::error::PlanError;
 use ddl_core::{COORDINATE_LIMIT, HORIZON, Position, TIME_STEP, between};
 use serde::{Deserialize, Serialize};
 
+/// The end of a forecast, seconds after the moment.
+const LAST: f64 = TIME_STEP * HORIZON as f64;
+
 /// A row of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PlanPoint {
@@ -11,12 +14,19 @@ pub struct PlanPoint {
     pub time: f64,
     /// Metres.
     pub position: Position,
-    /// Radius of whoever follows the plan, metres; distances are measured from its edge.
+    /// Radius of whoever follows the plan from this time on, metres; distances are measured from its edge.
     pub radius: f64,
 }
 
-/// A path over time, with straight lines between its rows. Before its first time it is at the first
-/// position, after its last time at the last position.
+impl PlanPoint {
+    /// Whether it comes before the end of a forecast, up to rounding.
+    fn is_within(&self) -> bool {
+        self.time + 1e-9 < LAST
+    }
+}
+
+/// A path over time, with straight lines between its rows; the radius of a row holds until the next one. Before its
+/// first time it is at the first position, after its last time at the last position.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Plan {
     points: Vec<PlanPoint>,
@@ -49,7 +59,7 @@ impl Plan {
                 return Err(PlanError::Order { row, time, before });
             }
         }
-        if last < 0.0 || first > TIME_STEP * HORIZON as f64 {
+        if last < 0.0 || first > LAST {
             return Err(PlanError::OutOfHorizon { first, last });
         }
         Ok(Self { points })
@@ -67,11 +77,13 @@ impl Plan {
         let to = self.points[next.min(self.points.len() - 1)];
         let share =
             if to.time > from.time { ((time - from.time) / (to.time - from.time)).clamp(0.0, 1.0) } else { 0.0 };
-        PlanPoint {
-            time,
-            position: between(from.position, to.position, share),
-            radius: from.radius + share * (to.radius - from.radius),
-        }
+        PlanPoint { time, position: between(from.position, to.position, share), radius: from.radius }
+    }
+
+    /// The largest radius that holds within 4.8 s, metres.
+    pub(crate) fn largest_radius(&self) -> f64 {
+        let later = self.points.iter().filter(|point| point.time > 0.0 && point.is_within());
+        later.map(|point| point.radius).fold(self.at(0.0).radius, f64::max)
     }
 }
 

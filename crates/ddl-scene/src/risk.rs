@@ -79,8 +79,7 @@ impl Futures {
         }
         let group = ego.and_then(|ego| self.groups().iter().find(|group| group.contains(&ego)));
         let odds = |plan: &Plan| {
-            let radius = plan.points().iter().map(|point| point.radius).fold(0.0, f64::max);
-            let [strangers, companions] = Energy::learned().avoidance(within + radius);
+            let [strangers, companions] = Energy::learned().avoidance(within + plan.largest_radius());
             let mut odds = vec![1.0 / strangers; self.pedestrians()];
             for &companion in group.into_iter().flatten() {
                 odds[companion] = 1.0 / companions;

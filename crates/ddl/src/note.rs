@@ -2,7 +2,7 @@
 
 use crate::error::DdlError;
 use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
-use ddl_core::{OBSERVED, PedestrianName, PedestrianNames, Setting};
+use ddl_core::{OBSERVED, PedestrianName, PedestrianNames, Setting, Window};
 use ddl_data::{Clock, Misfit, PlausibilityWarning, SceneName};
 use ddl_memory::{Refusal, Unsaved};
 use std::fmt::{Display, Formatter, Result};
@@ -37,6 +37,8 @@ pub enum Note {
     EndsEarly { end: String, last: String },
     /// Motions unlike the training motions.
     Unfamiliar { count: usize, of: usize, first: String },
+    /// Pedestrians too far away for the area of grids, at least one; nobody gave the area.
+    OutsideArea { count: usize, of: usize, first: PedestrianName },
     /// The memory of a file is of another place.
     MemoryRefused { path: PathBuf, refusal: Refusal },
     /// The memory could not be written; it is tried again.
@@ -73,12 +75,19 @@ impl MisfitNote {
 }
 
 impl Note {
+    /// What to tell of those whom the [area](ddl_scene::Futures::area) of grids leaves out, if any.
+    pub fn outside_area(left_out: &[usize], window: &Window) -> Option<Self> {
+        let first = window.name(*left_out.first()?);
+        Some(Self::OutsideArea { count: left_out.len(), of: window.len(), first })
+    }
+
     /// How grave it is, as messages begin: `note`, `warning` or `error`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Implausible(_)
             | Self::Misfits { .. }
             | Self::Unfamiliar { .. }
+            | Self::OutsideArea { .. }
             | Self::MemoryRefused { .. }
             | Self::MemoryUnwritten(_)
             | Self::MemoryUnsaved { .. } => "warning",
@@ -141,6 +150,12 @@ impl Display for Note {
                 "{count} of {of} motions are unlike the training motions (familiarity below {UNFAMILIAR_THRESHOLD}), \
                  first that of pedestrian {first}: their forecasts use little of the network, and their weights are \
                  flatter"
+            ),
+            Self::OutsideArea { count, of, first } => write!(
+                to,
+                "the grids leave out {count} of {of} pedestrians, first {first}: they are too far from the others for \
+                 one area of cells; give the area ({})",
+                Setting::Area
             ),
             Self::MemoryRefused { path, refusal } => write!(
                 to,

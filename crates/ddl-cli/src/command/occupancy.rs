@@ -5,8 +5,8 @@ use crate::paths::OutputPlace;
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::write_atomically;
-use ddl::scene::{Area, Futures, Occupancy};
-use ddl::{Moment, file_stem};
+use ddl::scene::{Area, Occupancy};
+use ddl::{Moment, Note, file_stem};
 use serde_json::Value;
 
 /// Compute grids of the probability that somebody is there
@@ -27,7 +27,8 @@ pub(crate) struct OccupancyCommand {
     /// Time between two grids, seconds; the first is of the moment itself, the last of at most 4.8 s after it
     #[arg(id = "grids", long = "every", value_name = "SECONDS", default_value_t = 0.4, allow_negative_numbers = true)]
     every: f64,
-    /// The area: lowest x and y, largest x and y, metres [default: all paths of the moment, and 1 m around them]
+    /// The area: lowest x and y, largest x and y, metres [default: all paths of the moment, and 1 m around them,
+    /// without people too far away for 4 million cells]
     #[arg(long, value_name = "X,Y,X,Y", value_parser = corners, allow_hyphen_values = true)]
     area: Option<[f64; 4]>,
     /// Radius of a pedestrian, metres
@@ -83,11 +84,15 @@ impl OccupancyCommand {
         self.format.unwrap_or(default)
     }
 
-    fn area_of(&self, futures: &Futures) -> anyhow::Result<Area> {
-        Ok(match self.area {
-            Some([x0, y0, x1, y1]) => Area::new([x0, y0], [x1, y1], self.cell)?,
-            None => futures.area(MARGIN, self.cell)?,
-        })
+    fn area_of(&self, moment: &Moment<'_>, times: usize, state: &mut StreamState) -> anyhow::Result<Area> {
+        if let Some([x0, y0, x1, y1]) = self.area {
+            return Ok(Area::new([x0, y0], [x1, y1], self.cell)?);
+        }
+        let (area, left_out) = moment.answer.futures()?.area(MARGIN, self.cell, times)?;
+        if let Some(note) = Note::outside_area(&left_out, moment.window) {
+            state.tell_once("area", format_args!("{}, at {} (told once)", note.line(), moment.when()));
+        }
+        Ok(area)
     }
 
     /// Writes the grids of one moment to files, whose names begin with `stem`.
@@ -139,7 +144,7 @@ impl AnsweringCommand for OccupancyCommand {
         let mut text = String::new();
         for moment in moments {
             let futures = moment.answer.futures()?;
-            let area = self.area_of(futures)?;
+            let area = self.area_of(moment, times.len(), state)?;
             area.ensure_kept(times.len())?;
             let grids = futures.occupancy(&area, &times, self.radius)?;
             let moment_number = moment.observed_until().rounded();

@@ -1,7 +1,5 @@
 //! Parsing of single fields: whole numbers, pedestrians and coordinates.
 
-use std::borrow::Cow;
-
 use ddl_core::{COORDINATE_LIMIT, FRAME_LIMIT, PedestrianName, is_frame};
 use time::format_description::well_known::Iso8601;
 use time::{OffsetDateTime, PrimitiveDateTime};
@@ -96,59 +94,35 @@ pub(super) fn has_fraction(text: &str) -> bool {
     text.contains(['.', 'e', 'E']) && text.trim().parse::<f64>().is_ok_and(|number| number.fract().abs() > 0.0)
 }
 
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum PedestrianField {
-    /// A number, and its spelling where that is not plain digits, such as `012`.
-    Number(i64, Option<Box<str>>),
-    /// A name that is not a number.
-    Word(Box<str>),
-}
-
-impl PedestrianField {
-    /// The text as the file has it.
-    pub(super) fn written(&self) -> Cow<'_, str> {
-        match self {
-            Self::Number(_, Some(text)) | Self::Word(text) => text.as_ref().into(),
-            Self::Number(number, None) => number.to_string().into(),
-        }
-    }
-}
-
-/// A pedestrian: a number as [`integer`] parses it, or a word. Fractions, NaN, infinite numbers and empty fields are
-/// refused. Whole numbers that are too large are words.
-pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, Problem> {
-    // Tables of other programs have 12.0 for 12.
-    let text = match trimmed(text).split_once('.') {
-        Some((whole, zeros)) if zeros.trim_matches('0').is_empty() && whole.parse::<i64>().is_ok() => whole,
-        _ => trimmed(text),
-    };
-    match whole_number(text) {
-        Some(number) => {
-            let is_plain = matches!(PedestrianName::of_text(text), PedestrianName::Number(_));
-            Ok(PedestrianField::Number(number, (!is_plain).then(|| text.into())))
-        }
-        None if text.is_empty() || is_fraction_or_infinite(text) => Err(not_integer(name, text)),
-        None => word(text, name),
+/// A pedestrian, by the rule of [`PedestrianName::of_text`]. Fractions, NaN, infinite numbers and empty fields are
+/// refused.
+pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianName, Problem> {
+    let text = trimmed(text);
+    match PedestrianName::of_text(text) {
+        number @ PedestrianName::Number(_) => Ok(number),
+        PedestrianName::Word(_) if text.is_empty() || is_fraction_or_infinite(text) => Err(not_integer(name, text)),
+        PedestrianName::Word(_) => word(text, name),
     }
 }
 
 /// A pedestrian that is named by a word. Control characters, which would act on terminals, are replaced by their
 /// escapes.
-pub(super) fn word(text: &str, name: &str) -> Result<PedestrianField, Problem> {
+pub(super) fn word(text: &str, name: &str) -> Result<PedestrianName, Problem> {
     if text.len() > LONGEST_WORD {
         let (found, length) = (quoted(text), text.len());
         return Err(format!("{name} has {length} bytes, at most {LONGEST_WORD} are read, found {found:?}").into());
     }
     if !text.contains(char::is_control) {
-        return Ok(PedestrianField::Word(text.into()));
+        return Ok(PedestrianName::Word(text.to_owned()));
     }
-    Ok(PedestrianField::Word(escaped(text).into()))
+    Ok(PedestrianName::Word(escaped(text)))
 }
 
-/// Whether a text is a fraction, NaN or infinite. `12e4567` is not: it is too large for a number and counts as a word.
+/// Whether a text is a fraction with a decimal point, NaN or infinite. `12e4567` is not: it counts as a word.
 fn is_fraction_or_infinite(text: &str) -> bool {
     let digit = text.starts_with(|c: char| c.is_ascii_digit());
-    text.parse::<f64>().is_ok_and(|number| if number.is_finite() { number.fract() != 0.0 } else { !digit })
+    let is_fraction = |number: f64| number.fract() != 0.0 && text.contains('.');
+    text.parse::<f64>().is_ok_and(|number| if number.is_finite() { is_fraction(number) } else { !digit })
 }
 
 /// A coordinate in metres, written in units of which `per_metre` make a metre.
@@ -186,14 +160,13 @@ mod tests {
             assert_eq!(integer(text, "frame"), Ok(12), "{text}");
         }
         let read = |text: &str| pedestrian(text, "pedestrian");
-        assert_eq!(read(" 12.0"), Ok(PedestrianField::Number(12, None)));
-        for (text, number) in [(" 1.2e1", 12), ("-0", 0), ("007", 7)] {
-            assert_eq!(read(text), Ok(PedestrianField::Number(number, Some(text.trim().into()))));
+        for text in ["12", " 12.0", "1.2e1"] {
+            assert_eq!(read(text), Ok(PedestrianName::Number(12)));
         }
-        for text in ["7f3e", "cam.0", "12e4567", "5e20", "9007199254740992", " a b "] {
-            assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));
+        for text in ["7f3e", "cam.0", "12e4567", "5e20", "9007199254740992", " a b ", "-0", "007", "0e12", "7e-2"] {
+            assert_eq!(read(text), Ok(PedestrianName::Word(text.trim().into())));
         }
-        assert_eq!(read("a\u{1b}[2Jb"), Ok(PedestrianField::Word("a\\u{1b}[2Jb".into())));
+        assert_eq!(read("a\u{1b}[2Jb"), Ok(PedestrianName::Word("a\\u{1b}[2Jb".into())));
         assert!(read(&"w".repeat(256)).is_ok() && read(&"w".repeat(257)).is_err());
         for text in ["", " ", "1.5", "NaN", "inf", "-inf"] {
             assert!(integer(text, "frame").is_err() && read(text).is_err(), "{text}");

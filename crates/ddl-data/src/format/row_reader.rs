@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
+use ddl_core::PedestrianName;
+
 use crate::format::fault::{Fault, FilePlace, FormatError};
-use crate::format::field::PedestrianField;
 use crate::format::header::TimeColumn;
 use crate::format::row_filter::{RowFilter, UNTRACKED};
 use crate::format::rows::TrackRow;
@@ -118,7 +119,7 @@ impl RowReader {
         }
         let frame = columns.frame(fields, time)?;
         let pedestrian = columns.pedestrian(fields)?;
-        if pedestrian == PedestrianField::Number(-1, None) {
+        if pedestrian == PedestrianName::Number(-1) {
             self.filter.leave_out(UNTRACKED.to_owned());
             return Ok(None);
         }

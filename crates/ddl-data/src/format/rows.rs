@@ -2,12 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ddl_core::{Numbering, PedestrianId, PedestrianNames, Position, Setting};
+use ddl_core::{Numbering, PedestrianId, PedestrianName, PedestrianNames, Position, Setting};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::file_error::DataError;
 use crate::format::fault::{FilePlace, FormatError};
-use crate::format::field::PedestrianField;
 use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate};
 use crate::observation::Observation;
 use crate::observe::LONGEST_GAP;
@@ -22,7 +21,7 @@ pub(super) struct TrackRow {
     pub(super) frame: i64,
     /// What the field of the time counts; `None` for frame numbers.
     pub(super) unit: Option<TimeUnit>,
-    pub(super) pedestrian: PedestrianField,
+    pub(super) pedestrian: PedestrianName,
     pub(super) position: Position,
     pub(super) place: FilePlace,
 }
@@ -30,7 +29,7 @@ pub(super) struct TrackRow {
 impl TrackRow {
     /// A row with numbers alone.
     pub(super) fn numbered(frame: i64, pedestrian: i64, position: Position, place: FilePlace) -> Self {
-        Self { scene: None, frame, unit: None, pedestrian: PedestrianField::Number(pedestrian, None), position, place }
+        Self { scene: None, frame, unit: None, pedestrian: PedestrianName::Number(pedestrian), position, place }
     }
 }
 
@@ -81,10 +80,8 @@ fn observations(
     Ok((placed.into_iter().map(|(seen, _)| seen).collect(), names))
 }
 
-/// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a
-/// word, the order of first appearance.
+/// The observations with pedestrian numbers: those of the file and, for words, others in the order of first appearance.
 fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
-    let words = rows.iter().any(|row| matches!(row.pedestrian, PedestrianField::Word(_)));
     // In order of time, as a stream gives them: later rows change no number.
     let mut rows = rows;
     rows.sort_by_key(|row| row.frame);
@@ -92,9 +89,9 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     let mut names = BTreeMap::new();
     let placed = rows.into_iter().map(|row| {
         let pedestrian = match row.pedestrian {
-            PedestrianField::Number(number, _) if !words => PedestrianId(number),
-            field => {
-                let (id, word) = numbering.number(&field.written());
+            PedestrianName::Number(number) => PedestrianId(number),
+            PedestrianName::Word(word) => {
+                let (id, word) = numbering.number(&word);
                 names.entry(id).or_insert(word);
                 id
             }
@@ -116,7 +113,7 @@ fn restarts(rows: &[TrackRow]) -> usize {
     // Pedestrians take turns, instead of following each other.
     let is_crowd = |part: &&[TrackRow]| {
         let changes = part.array_windows().filter(|[before, row]| before.pedestrian != row.pedestrian);
-        let pedestrians: BTreeSet<&PedestrianField> = part.iter().map(|row| &row.pedestrian).collect();
+        let pedestrians: BTreeSet<&PedestrianName> = part.iter().map(|row| &row.pedestrian).collect();
         changes.count() >= pedestrians.len()
     };
     match parts.len() {
@@ -129,7 +126,7 @@ fn restarts(rows: &[TrackRow]) -> usize {
 /// The same for a file in another order, such as one pedestrian after the other. It is 0 unless the rows of every
 /// pedestrian form parts in order of time, and each part is wholly earlier than the part before it.
 fn restarts_of_tracks(rows: &[TrackRow], disorder: i64) -> usize {
-    let mut tracks: BTreeMap<&PedestrianField, Vec<i64>> = BTreeMap::new();
+    let mut tracks: BTreeMap<&PedestrianName, Vec<i64>> = BTreeMap::new();
     for row in rows {
         tracks.entry(&row.pedestrian).or_default().push(row.frame);
     }

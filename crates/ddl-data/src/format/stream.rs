@@ -2,7 +2,7 @@
 
 #![expect(clippy::ref_option, reason = "the keys of the map of scenes")]
 
-use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::collections::{BTreeMap, VecDeque};
 use std::io::BufRead;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,7 +14,6 @@ use crate::file_error::DataError;
 use crate::format::choice::ColumnChoice;
 use crate::format::comments::{is_comment, rate_of};
 use crate::format::fault::{Fault, FormatError};
-use crate::format::field::PedestrianField;
 use crate::format::kind::Format;
 use crate::format::lines::TextLines;
 use crate::format::problem::{MIXED_TIMES, duplicate, when};
@@ -58,7 +57,7 @@ pub struct Frame {
 /// which is told once. Files of the `star` convention are not in order of time and cannot be streamed.
 ///
 /// Pedestrians may be named by words, by numbers or by both. Memory is bounded by the pedestrians of incomplete frames,
-/// 100,000 at most, and the last 200,000 words. A word that has been forgotten gets a new pedestrian number.
+/// 100,000 at most, and the 200,000 words used last. A word that has been forgotten gets a new pedestrian number.
 ///
 /// # Scenes
 /// A table with a column `scene`, or lines of JSON with a field `track.scene`, may hold several scenes. Their lines may
@@ -78,8 +77,6 @@ pub struct FrameReader<R> {
     /// What lines of TrajNet++ without an observation say.
     others: trajnet::OtherLines,
     words: Numbering,
-    /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
-    numbers: BTreeSet<(Option<SceneName>, Box<str>)>,
     scenes: BTreeMap<Option<SceneName>, SceneProgress>,
     /// The last frames of scenes that were forgotten.
     left: VecDeque<Frame>,
@@ -105,14 +102,12 @@ struct SceneProgress {
     current: Option<Growing>,
     /// The last frame that was returned.
     last: Option<i64>,
-    /// Whether a pedestrian of the scene was named by a word.
-    has_words: bool,
     heard: Instant,
 }
 
 impl SceneProgress {
     fn unseen() -> Self {
-        Self { current: None, last: None, has_words: false, heard: Instant::now() }
+        Self { current: None, last: None, heard: Instant::now() }
     }
 }
 
@@ -140,7 +135,6 @@ impl<R: BufRead> FrameReader<R> {
             frame_rate: None,
             others: trajnet::OtherLines::default(),
             words: Numbering::remembering(MOST_WORDS),
-            numbers: BTreeSet::new(),
             scenes: BTreeMap::new(),
             left: VecDeque::new(),
             last_scene: None,
@@ -279,7 +273,7 @@ impl<R: BufRead> FrameReader<R> {
         self.last_scene.clone_from(&seen.scene);
         let name = seen.scene.clone();
         let before = self.begin_frame(&name, seen.frame)?;
-        let (pedestrian, word) = self.numbered(&name, seen.pedestrian);
+        let (pedestrian, word) = self.numbered(seen.pedestrian);
         let (line, limit) = (self.lines.number(), LARGEST_CROWD);
         let scene = self.scenes.entry(name.clone()).or_insert_with(SceneProgress::unseen);
         let growing = scene.current.as_ref();
@@ -378,29 +372,15 @@ impl<R: BufRead> FrameReader<R> {
         Ok(())
     }
 
-    /// The number of a pedestrian of the scene, and its name if it is a word.
-    fn numbered(&mut self, name: &Option<SceneName>, who: PedestrianField) -> (PedestrianId, Option<Arc<str>>) {
-        let who = match who {
-            PedestrianField::Number(number, None) => return (PedestrianId(number), None),
-            // After a word, `1e3` is also a word, unless it was a number before.
-            PedestrianField::Number(number, Some(text)) => {
-                let has_words = self.scenes.get(name).is_some_and(|scene| scene.has_words);
-                let written = (name.clone(), text);
-                if !has_words || self.numbers.contains(&written) {
-                    if self.numbers.len() < MOST_WORDS {
-                        self.numbers.insert(written);
-                    }
-                    return (PedestrianId(number), None);
-                }
-                PedestrianField::Number(number, Some(written.1))
+    /// The number of a pedestrian, and its name if it is a word.
+    fn numbered(&mut self, who: PedestrianName) -> (PedestrianId, Option<Arc<str>>) {
+        match who {
+            PedestrianName::Number(number) => (PedestrianId(number), None),
+            PedestrianName::Word(word) => {
+                let (id, word) = self.words.number(&word);
+                (id, Some(word))
             }
-            word @ PedestrianField::Word(_) => word,
-        };
-        if let Some(scene) = self.scenes.get_mut(name) {
-            scene.has_words = true;
         }
-        let (id, word) = self.words.number(&who.written());
-        (id, Some(word))
     }
 
     /// Takes the frame of the scene as read so far.

@@ -2,14 +2,14 @@
 
 use std::borrow::Cow;
 
-use ddl_core::{Position, Setting};
+use ddl_core::{PedestrianName, Position, Setting};
 
 use crate::clock::{STAMPS_A_SECOND, TimeUnit};
 use crate::format::choice::ColumnChoice;
 use crate::format::column_names::{LengthUnit, is_of_time};
 use crate::format::comments::{is_comment, names_in_comments};
 use crate::format::fault::{Fault, FormatError};
-use crate::format::field::{self, PedestrianField, are_alike};
+use crate::format::field::{self, are_alike};
 use crate::format::header::{ColumnRoles, TimeColumn, first_of, is_camera};
 use crate::format::kind::Format;
 use crate::format::layouts::FileLayout;
@@ -206,14 +206,14 @@ impl TrackColumns {
         Ok(frame + rest * STAMPS_A_SECOND / a_second)
     }
 
-    pub(super) fn pedestrian(&self, fields: &[Cow<'_, str>]) -> Result<PedestrianField, Fault> {
+    pub(super) fn pedestrian(&self, fields: &[Cow<'_, str>]) -> Result<PedestrianName, Fault> {
         let (index, name) = (self.roles.pedestrian, &fields[self.roles.pedestrian]);
         let number = self.separator.with_point(name);
         // Only `12,0` is a number; `1,000` and `3,12` are names.
         let is_float = name.ends_with(",0") || name.ends_with(",00");
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
-            field::integer(&number, "pedestrian").map(|number| PedestrianField::Number(number, None))
+            field::integer(&number, "pedestrian").map(|number| PedestrianName::Number(number))
         } else {
             field::pedestrian(if is_float { &number } else { name }, "pedestrian")
         };

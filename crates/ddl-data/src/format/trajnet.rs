@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_core::{FRAME_LIMIT, Position};
+use ddl_core::{FRAME_LIMIT, PedestrianName, Position};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -11,7 +11,7 @@ use serde_json::value::RawValue;
 use crate::class::is_vehicle;
 use crate::clock::TimeUnit;
 use crate::format::fault::{FilePlace, FormatError, Problem};
-use crate::format::field::{self, PedestrianField};
+use crate::format::field;
 use crate::format::problem::when;
 use crate::format::quoted::quoted;
 use crate::format::row_filter::{RowFilter, UNTRACKED};
@@ -21,20 +21,17 @@ use crate::scene_name::SceneName;
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are left out. Identical rows count once.
 #[expect(clippy::float_cmp, reason = "a repeated track is written with the same digits")]
 pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), FormatError> {
-    let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
+    let mut seen: BTreeMap<(i64, PedestrianName), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
     let mut others = OtherLines::default();
     for (index, text) in text.lines().enumerate() {
         let observation = observation(text, index + 1, &mut others);
         let Some(row) = FilePlace::line(index + 1).read(observation)? else { continue };
-        let key = match &row.pedestrian {
-            PedestrianField::Number(number, _) => PedestrianField::Number(*number, None),
-            word @ PedestrianField::Word(_) => word.clone(),
-        };
         let (frame, place, position) = (row.frame, row.place, row.position);
-        match seen.get(&(frame, key.clone())) {
+        let key = (frame, row.pedestrian.clone());
+        match seen.get(&key) {
             None => {
-                seen.insert((frame, key), (position, place.line_number()));
+                seen.insert(key, (position, place.line_number()));
                 rows.push(row);
             }
             Some((known, _)) if *known == position => {}
@@ -43,7 +40,7 @@ pub(super) fn parse(text: &str) -> Result<(Vec<TrackRow>, OtherLines), FormatErr
                 let problem = format!(
                     "pedestrian {} is in {} at {position:?}, but on line {first_line} at {known:?}; overlapping scenes \
                      must agree",
-                    key.written(),
+                    row.pedestrian,
                     when(frame, row.unit)
                 );
                 return Err(place.wrong(problem));
@@ -200,7 +197,7 @@ fn written(value: Option<Value>, name: &str) -> Result<String, Problem> {
     Ok(value.ok_or_else(|| format!("{name} is missing"))?.to_string())
 }
 
-fn pedestrian(value: Option<Value>) -> Result<PedestrianField, Problem> {
+fn pedestrian(value: Option<Value>) -> Result<PedestrianName, Problem> {
     let is_large = |number: f64| number.abs() >= FRAME_LIMIT as f64;
     match value {
         // A quoted pedestrian is a word, even if it holds only digits.
@@ -209,7 +206,7 @@ fn pedestrian(value: Option<Value>) -> Result<PedestrianField, Problem> {
             Err(format!("track.p {number} has lost digits, as a number of JSON; write it as a text").into())
         }
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p"),
-        other => Ok(PedestrianField::Number(field::integer(&written(other, "track.p")?, "track.p")?, None)),
+        other => Ok(PedestrianName::Number(field::integer(&written(other, "track.p")?, "track.p")?)),
     }
 }
 

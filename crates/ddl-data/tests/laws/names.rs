@@ -1,13 +1,16 @@
 //! Pedestrians named by words in files and streams.
 
-use ddl_core::{PedestrianId, PedestrianName};
+use std::collections::BTreeSet;
+
+use ddl_core::PedestrianName;
 use ddl_data::{Completeness, Format, FrameReader, parse_recording};
+use proptest::prelude::*;
 
 type Row = fn(i64, &str) -> String;
 
 #[test]
 fn pedestrians_may_be_words() {
-    let names = ["7f3e-aa", "12", "007", "1e3"];
+    let names = ["12", "7f3e-aa", "007", "1e3"];
     let formats: [(Format, &str, Row); 3] = [
         (Format::Table, "frame,pedestrian,x,y\n", |t, name| format!("{t},{name},{t},0\n")),
         (Format::SocialGan, "", |t, name| format!("{t} {name} {t} 0\n")),
@@ -45,13 +48,34 @@ fn pedestrians_may_be_words() {
     }
 }
 
-#[test]
-fn a_number_in_a_stream_stays_a_number_when_words_come() {
-    let text = "frame,pedestrian,x,y\n0,017,0,0\n1,017,0,0\n2,017,0,0\n2,ab,5,5\n3,017,0,0\n3,ab,5,5\n";
-    let mut frames = FrameReader::new(text.as_bytes(), "tracker");
-    let mut first = Vec::new();
-    while let Some(frame) = frames.next_frame().unwrap() {
-        first.push(frame.pedestrians[0].0);
+proptest! {
+    /// Each id is one pedestrian, of the same number and name in both.
+    #[test]
+    fn files_and_streams_name_alike(ids in prop::collection::btree_set("[-+0-9ae]{1,4}|[1-9][0-9]?[.]0", 2..5)) {
+        prop_assume!(!ids.contains("-1"));
+        let rows = (0..3).flat_map(|t| ids.iter().map(move |id| format!("{t},{id},{t},0\n")));
+        let text = "frame,pedestrian,x,y\n".to_owned() + &rows.collect::<String>();
+        let mut frames = FrameReader::new(text.as_bytes(), "tracker");
+        let (mut streamed, mut failed) = (BTreeSet::new(), false);
+        loop {
+            match frames.next_frame() {
+                Ok(Some(frame)) => {
+                    streamed.extend(frame.pedestrians.iter().map(|(id, _)| (*id, frame.names.of(*id))));
+                }
+                Ok(None) => break,
+                Err(_) => failed = true,
+            }
+        }
+        let read = parse_recording(text.as_bytes(), "f", Format::Table);
+        prop_assert_eq!(read.is_err(), failed, "12 and 12.0 are one number");
+        if let Ok(read) = read {
+            let seen = read.observations().iter().map(|seen| (seen.pedestrian, read.names().of(seen.pedestrian)));
+            prop_assert_eq!(&seen.collect::<BTreeSet<_>>(), &streamed);
+            let mut names: Vec<String> = streamed.iter().map(|(_, name)| name.to_string()).collect();
+            let mut written: Vec<String> = ids.iter().map(|id| id.trim_end_matches(".0").to_owned()).collect();
+            names.sort();
+            written.sort();
+            prop_assert_eq!(names, written);
+        }
     }
-    assert_eq!(first, [PedestrianId(17); 4]);
 }

@@ -276,8 +276,16 @@ class Forecast:
             Time between two grids, seconds.
         area
             Lowest x and y, largest x and y, metres; default: all paths and ``margin`` around them.
+
+        Warns
+        -----
+        DoubtWarning
+            Pedestrians are too far from the others for the default area of at most 4 million cells: it leaves them out.
         """
-        grids, times, origin = self._scene().occupancy((cell, every, radius, margin), area)
+        grids, times, origin, outside = self._scene().occupancy((cell, every, radius, margin), area)
+        if outside > 0:
+            words = f"pedestrians too far from the others for the area of the grids: {outside}; give area="
+            warnings.warn(words, DoubtWarning, stacklevel=2)
         return Occupancy(grids, np.array(times), cell, np.array(origin))
 
     def _ensure_joint(self) -> None:

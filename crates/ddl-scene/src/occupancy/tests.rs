@@ -108,6 +108,39 @@ fn who_was_seen_a_while_ago_is_not_certain_now() {
     assert!((found - probability(0.25 / 0.4)).abs() < 1e-3, "{found}");
 }
 
+proptest! {
+    /// One who is far away costs at most their own cells: the area of the others is that without them. Of two alone the
+    /// one with the narrower forecast is the bulk.
+    #[test]
+    fn far_people_are_left_out_of_the_default_area(
+        starts in vec([-20.0..20.0f64, -20.0..20.0f64], 1..5), away in 2e3..1e6f64, place in 0_usize..5, times in 1_usize..90,
+    ) {
+        let place = place.min(starts.len());
+        let crowd = |starts: &[Position], scales: &[f64]| futures(starts, &vec![vec![[0.5; 2]]; starts.len()], &[1.0], scales);
+        let near = crowd(&starts, &vec![0.5; starts.len()]).area(1.0, 0.1, times).unwrap();
+        prop_assert!(near.1.is_empty());
+        let mut all = starts.clone();
+        all.insert(place, [away, -away]);
+        let mut scales = vec![0.5; all.len()];
+        scales[place] = 0.6;
+        prop_assert_eq!(crowd(&all, &scales).area(1.0, 0.1, times).unwrap(), (near.0, vec![place]));
+    }
+}
+
+/// A line of people in cells of 0.1 m: some fifty fit, and fewer in grids of many times.
+#[test]
+fn the_default_area_is_bounded() {
+    let line: Vec<Position> = (0..500).map(|i| [4.0 * f64::from(i), 4.0 * f64::from(i)]).collect();
+    let crowd = futures(&line, &vec![vec![[0.0; 2]]; line.len()], &[1.0], &vec![0.5; line.len()]);
+    for (times, most) in [(1, Area::MOST_AROUND), (200, 1_000_000)] {
+        let (area, left_out) = crowd.area(1.0, 0.1, times).unwrap();
+        let cells = area.size().iter().product::<usize>();
+        assert!(cells <= most && 10 * cells > 9 * most && area.ensure_kept(times).is_ok(), "{cells}");
+        assert!(left_out.contains(&0) && left_out.contains(&499) && !left_out.contains(&249), "around the middle");
+    }
+    assert!(crowd.area(1.0, 2.0, 1).unwrap().1.is_empty(), "all fit in larger cells");
+}
+
 #[test]
 fn what_cannot_be_drawn_is_refused() {
     let futures = futures(&[[0.0; 2]], &[vec![[0.0; 2]]], &[1.0], &[0.5]);
@@ -122,10 +155,10 @@ inf 0.1 the margin is inf
     for case in cases.trim().lines() {
         let parts: Vec<&str> = case.splitn(3, ' ').collect();
         let [margin, cell] = [0, 1].map(|part: usize| parts[part].parse().unwrap());
-        let refused = futures.area(margin, cell).unwrap_err().to_string();
+        let refused = futures.area(margin, cell, 1).unwrap_err().to_string();
         assert!(refused.starts_with(parts[2]), "{refused}");
     }
-    assert_eq!(futures.area(0.0, 0.5).unwrap().size(), [1, 1]);
+    assert_eq!(futures.area(0.0, 0.5, 1).unwrap().0.size(), [1, 1]);
     let area = Area::new([0.0; 2], [1.0; 2], 0.1).unwrap();
     assert_eq!(area.size(), [10, 10]);
     assert!(Area::new([0.0; 2], [0.0, 1.0], 0.1).is_err() && Area::new([f64::NAN; 2], [1.0; 2], 0.1).is_err());

@@ -5,14 +5,14 @@ fn plan(rows: &[[f64; 4]]) -> Result<Plan, PlanError> {
 }
 
 #[test]
-fn between_rows_everything_is_on_a_line() {
+fn between_rows_the_way_is_a_line_and_the_radius_holds() {
     let plan = plan(&[[1.0, 2.0, -3.0, 0.2], [3.0, 6.0, 5.0, 1.0], [4.0, 6.0, 5.5, 0.0]]).unwrap();
     for (time, [x, y, radius]) in [
         (-5.0, [2.0, -3.0, 0.2]),
         (1.0, [2.0, -3.0, 0.2]),
-        (1.5, [3.0, -1.0, 0.4]),
+        (1.5, [3.0, -1.0, 0.2]),
         (3.0, [6.0, 5.0, 1.0]),
-        (3.6, [6.0, 5.3, 0.4]),
+        (3.6, [6.0, 5.3, 1.0]),
         (4.0, [6.0, 5.5, 0.0]),
         (60.0, [6.0, 5.5, 0.0]),
     ] {

@@ -1,4 +1,4 @@
-//! A plan in legs: everything moves on a straight line during each.
+//! A plan in legs: everything moves on a straight line during each, with one radius.
 
 use crate::plan::Plan;
 use ddl_core::{HORIZON, Position, TIME_STEP};
@@ -15,14 +15,14 @@ pub(super) struct CourseLeg {
     shares: [f64; 2],
     /// The plan at its two ends, metres.
     pub(super) positions: [Position; 2],
-    pub(super) radii: [f64; 2],
+    pub(super) radius: f64,
 }
 
 /// The legs of a plan over 12 steps.
 pub(super) fn legs(plan: &Plan) -> Vec<CourseLeg> {
     let mut legs = Vec::with_capacity(HORIZON);
     let mut rows = plan.points().iter().map(|row| row.time / TIME_STEP).peekable();
-    let (mut from, mut start) = (0.0, plan.at(0.0));
+    let (mut from, mut start) = (0.0, plan.at(0.0).position);
     for step in 0..HORIZON {
         let first = step as f64;
         while from < first + 1.0 {
@@ -30,13 +30,10 @@ pub(super) fn legs(plan: &Plan) -> Vec<CourseLeg> {
             if to < from + SAME {
                 continue;
             }
-            let end = plan.at(to * TIME_STEP);
-            legs.push(CourseLeg {
-                step,
-                shares: [from - first, to - first],
-                positions: [start.position, end.position],
-                radii: [start.radius, end.radius],
-            });
+            let end = plan.at(to * TIME_STEP).position;
+            // Rounding may put a row on either side of an end.
+            let radius = plan.at(f64::midpoint(from, to) * TIME_STEP).radius;
+            legs.push(CourseLeg { step, shares: [from - first, to - first], positions: [start, end], radius });
             (from, start) = (to, end);
         }
     }
@@ -71,18 +68,10 @@ impl CourseLeg {
     pub(super) fn distance(&self, approach: &LegApproach, z: Position) -> f64 {
         let [[x, y], [x1, y1]] =
             [0, 1].map(|end| [0, 1].map(|axis| approach.offsets[end][axis] + approach.scales[end] * z[axis]));
-        let [dx, dy, growth] = [x1 - x, y1 - y, self.radii[1] - self.radii[0]];
-        let at = |share: f64| {
-            let [x, y] = [x + share * dx, y + share * dy];
-            (x * x + y * y).sqrt() - self.radii[0] - share * growth
-        };
-        // The square of the distance is a u^2 + 2 b u + c; the derivative of at(u) is 0 at the root below.
-        let [a, b, c] = [dx * dx + dy * dy, x * dx + y * dy, x * x + y * y];
-        let ends = at(0.0).min(at(1.0));
-        if a <= growth * growth {
-            return ends;
-        }
-        let root = growth * ((a * c - b * b).max(0.0) / (a - growth * growth)).sqrt() - b;
-        ends.min(at((root / a).clamp(0.0, 1.0)))
+        let [dx, dy] = [x1 - x, y1 - y];
+        let nearest = -(x * dx + y * dy) / (dx * dx + dy * dy).max(f64::MIN_POSITIVE);
+        let share = nearest.clamp(0.0, 1.0);
+        let [x, y] = [x + share * dx, y + share * dy];
+        (x * x + y * y).sqrt() - self.radius
     }
 }

@@ -136,7 +136,7 @@ impl CrowdAtRisk {
         let legs = legs(plan);
         let rings = rings(self.origin, |step| {
             let of_step = || legs.iter().filter(move |leg| leg.step == step);
-            let radius = of_step().flat_map(|leg| leg.radii).fold(0.0, f64::max);
+            let radius = of_step().map(|leg| leg.radius).fold(0.0, f64::max);
             (of_step().flat_map(|leg| leg.positions), within + radius)
         });
         Sweep { legs, within, rings }
@@ -154,10 +154,10 @@ impl CrowdAtRisk {
         let (mut now, mut first) = ([0; HORIZON], 0);
         for (l, leg) in sweep.legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
             let LegApproach { offsets, scales } = leg.approach(&self.paths[pair], &self.scales[i]);
-            let reaches = leg.radii.map(|radius| sweep.within + radius);
-            now[leg.step] |= self.close(k, offsets, scales, reaches);
+            let reach = sweep.within + leg.radius;
+            now[leg.step] |= self.close(k, offsets, scales, reach);
             if l == 0 && now[0] > 0 {
-                first = self.close(k, [offsets[0]; 2], [scales[0]; 2], [reaches[0]; 2]);
+                first = self.close(k, [offsets[0]; 2], [scales[0]; 2], reach);
             }
         }
         let mut so_far = 0;
@@ -170,17 +170,16 @@ impl CrowdAtRisk {
         (so_far > 0).then_some(Hits { steps, until })
     }
 
-    /// The deviations from a hypothesis that come closer during a leg than these distances at its ends, one bit for
-    /// each.
-    fn close(&self, k: usize, offsets: [Position; 2], scales: [f64; 2], reaches: [f64; 2]) -> u64 {
+    /// The deviations from a hypothesis that come closer during a leg than this distance, one bit for each.
+    fn close(&self, k: usize, offsets: [Position; 2], scales: [f64; 2], reach: f64) -> u64 {
         let offsets = offsets.map(|offset| offset.map(|number| number as f32));
-        let way = PedestrianWay::new(offsets, scales, reaches);
+        let way = PedestrianWay::new(offsets, scales, reach);
         let nearest = way.nearest() * (1.0 - 4.0 * ROUNDING as f32);
-        let reaches = [way.r + way.dr.max(0.0), way.s + way.ds.max(0.0)];
+        let most = way.s + way.ds.max(0.0);
         let mut close = 0;
         // The outermost deviations first: further inside none come close if these stay away.
         for (b, block) in self.deviations[k].blocks.iter().enumerate().rev() {
-            let reach = reaches[0] + reaches[1] * block.most;
+            let reach = way.r + most * block.most;
             if nearest > reach * reach {
                 break;
             }
@@ -203,8 +202,8 @@ impl CrowdAtRisk {
     }
 }
 
-/// A leg in `f32`: from the plan to a pedestrian, its scale, and the distance that counts as close; where it begins,
-/// and what is added until its end.
+/// A leg in `f32`: from the plan to a pedestrian and its scale, where it begins and what is added until its end; the
+/// distance that counts as close.
 struct PedestrianWay {
     x: f32,
     y: f32,
@@ -213,14 +212,12 @@ struct PedestrianWay {
     dx: f32,
     dy: f32,
     ds: f32,
-    dr: f32,
 }
 
 impl PedestrianWay {
-    fn new([[x, y], end]: [[f32; 2]; 2], scales: [f64; 2], reaches: [f64; 2]) -> Self {
-        let [[s, s1], [r, r1]] = [scales, reaches].map(|ends| ends.map(|number| number as f32));
-        let [dx, dy, ds, dr] = [end[0] - x, end[1] - y, s1 - s, r1 - r];
-        Self { x, y, s, r, dx, dy, ds, dr }
+    fn new([[x, y], end]: [[f32; 2]; 2], scales: [f64; 2], reach: f64) -> Self {
+        let [s, s1] = scales.map(|scale| scale as f32);
+        Self { x, y, s, r: reach as f32, dx: end[0] - x, dy: end[1] - y, ds: s1 - s }
     }
 
     /// The least squared distance of the path itself.
@@ -241,8 +238,8 @@ impl PedestrianWay {
             let [x, y] = [self.x + self.s * zx, self.y + self.s * zy];
             let [dx, dy] = [self.dx + self.ds * zx, self.dy + self.ds * zy];
             // Close where a u^2 + 2 b u + c <= 0 for a share u of the leg.
-            let a = dx * dx + dy * dy - self.dr * self.dr;
-            let b = x * dx + y * dy - self.r * self.dr;
+            let a = dx * dx + dy * dy;
+            let b = x * dx + y * dy;
             let c = x * x + y * y - self.r * self.r;
             let on_the_way = (b < 0.0) & (a + b > 0.0) & (a * c <= b * b);
             let is_close = (c <= 0.0) | (a + 2.0 * b + c <= 0.0) | on_the_way;

@@ -50,7 +50,9 @@ fn row_at(rows: &[[f64; 4]], time: f64) -> [f64; 4] {
         return rows[if time < rows[0][0] { 0 } else { rows.len() - 1 }];
     };
     let [a, b] = [pair[0], pair[1]];
-    std::array::from_fn(|column| a[column] + (time - a[0]) / (b[0] - a[0]) * (b[column] - a[column]))
+    let [t, x, y, _] =
+        std::array::from_fn(|column| a[column] + (time - a[0]) / (b[0] - a[0]) * (b[column] - a[column]));
+    [t, x, y, a[3]]
 }
 
 /// The least value of a convex function between two times, by ternary search.
@@ -133,8 +135,8 @@ proptest! {
         };
         for (i, k) in (0..4).flat_map(|i| (0..3).map(move |k| (i, k))) {
             let Quadrature { x: zx, y: zy } = &quadratures[k];
-            let edge = |z: usize, time: f64| {
-                let [_, px, py, r] = row_at(&rows, time);
+            let edge = |z: usize, time: f64, r: f64| {
+                let [_, px, py, _] = row_at(&rows, time);
                 let scale = now * (1.0 - time / 0.4).max(0.0) + scales[i] * time / 4.8;
                 let [x, y] = [0, 1].map(|axis| starts[i][axis] + time * velocities[i][k][axis]);
                 (x + scale * zx[z] - px).hypot(y + scale * zy[z] - py) - r
@@ -144,7 +146,10 @@ proptest! {
             let mut so_far = [f64::INFINITY; DEVIATIONS];
             for step in 0..HORIZON {
                 let during: [f64; DEVIATIONS] = std::array::from_fn(|z| {
-                    legs(step).map(|leg| least(leg, |time| edge(z, time))).fold(f64::INFINITY, f64::min)
+                    legs(step).map(|leg| {
+                        let [.., radius] = row_at(&rows, f64::midpoint(leg[0], leg[1]));
+                        least(leg, |time| edge(z, time, radius))
+                    }).fold(f64::INFINITY, f64::min)
                 });
                 for (so_far, during) in so_far.iter_mut().zip(during) {
                     *so_far = so_far.min(during);
@@ -152,7 +157,7 @@ proptest! {
                 for (hits, distances) in hits.iter().zip([during, so_far]) {
                     // Those who were close at the moment itself, and the others.
                     let count = |limit: f64, first: bool, off: f64| {
-                        let is_of = |z: &usize| (edge(*z, 0.0) <= within + off) == first;
+                        let is_of = |z: &usize| (edge(*z, 0.0, rows[0][3]) <= within + off) == first;
                         (0..DEVIATIONS).filter(|z| distances[*z] <= limit && is_of(z)).count() as u32
                     };
                     for (found, first) in hits[step].into_iter().zip([true, false]) {
@@ -189,6 +194,11 @@ proptest! {
         let together = crowd.risks(&plans, within, None).unwrap();
         prop_assert_eq!(&together[1..], &[risk.clone(), risk.clone()]);
         prop_assert_eq!(&together[0], &one(&crowd, &wider, within));
+        // What comes after the forecast changes nothing.
+        let [_, x, y, _] = row_at(&rows, 4.8);
+        let until_end = rows.iter().filter(|row| row[0] < 4.8).copied();
+        let [ends, goes_on] = [0.0, 9.0].map(|late| plan(&until_end.clone().chain([[4.8, x, y, late], [60.0, x, y, late]]).collect::<Vec<_>>()));
+        prop_assert_eq!(crowd.risks_if_seen(&[ends], within, None), crowd.risks_if_seen(&[goes_on], within, None));
         let (mut starts, mut velocities, mut scales) = (starts, velocities, scales);
         starts.reverse();
         velocities.reverse();

@@ -17,12 +17,14 @@ def distances(case, pedestrian, future, z):
     scales = [case["deviation"], *(case["scales"][pedestrian] * t / 12 for t in range(1, 13))]
     steps = []
     for step in range(12):
+        # The radius of a row holds from its time on; rows are at the ends of steps.
+        radius = rows[np.searchsorted(rows[:, 0], 0.4 * (step + 0.5)) - 1, 3]
         places = []
         for t in np.linspace(step, step + 1, PLACES + 1):
-            plan = np.array([np.interp(0.4 * t, rows[:, 0], rows[:, column]) for column in (1, 2, 3)])
+            plan = np.array([np.interp(0.4 * t, rows[:, 0], rows[:, column]) for column in (1, 2)])
             at = np.asarray(case["starts"][pedestrian]) + 0.4 * t * np.asarray(case["velocities"][pedestrian][future])
-            gap = at - plan[:2] + np.interp(t, range(13), scales) * z
-            places.append(np.linalg.norm(gap, axis=1) - plan[2])
+            gap = at - plan + np.interp(t, range(13), scales) * z
+            places.append(np.linalg.norm(gap, axis=1) - radius)
         steps.append(places)
     return np.array(steps)
 
@@ -50,7 +52,7 @@ def scene(rng, size, deviation, ego):
         "within": float(rng.uniform(0.1, 0.5)),
         "ego": ego,
     }
-    reach = case["within"] + max(row[3] for row in case["plan"])
+    reach = case["within"] + max(row[3] for row in case["plan"] if row[0] < 4.8)
     odds = [np.exp(-np.interp(reach, AVOIDANCE["within"], AVOIDANCE[kind])) for kind in ("strangers", "companions")]
     together = set() if ego is None else companions(case)
     # Of each pedestrian and future: probabilities to be close of those who are now, and of others.
