@@ -21,5 +21,5 @@ pub use futures::Futures;
 pub use groups::groups;
 pub use mixture::JointMixture;
 pub use occupancy::{Area, Occupancy};
-pub use plan::{Plan, PlanPoint};
+pub use plan::{Plan, PlanDoubt, PlanPoint};
 pub use risk::{Clearance, Risk};
