@@ -48,7 +48,7 @@ pub enum PlanError {
     Order { row: usize, time: f64, before: f64 },
     #[error(
         "the plan is from {first} s to {last} s; forecasts reach from 0 to 4.8 s after the moment: give times in \
-         seconds from the moment"
+         seconds from the moment, not those of a clock and not milliseconds"
     )]
     OutOfHorizon { first: f64, last: f64 },
 }

@@ -23,5 +23,5 @@ pub use groups::groups;
 pub use mixture::{JointMixture, JointScene};
 pub use occupancy::{Area, Occupancy};
 pub use parts::ScenePart;
-pub use plan::{Plan, PlanPoint};
+pub use plan::{Plan, PlanDoubt, PlanPoint};
 pub use risk::{Clearance, Risk};

@@ -1,7 +1,10 @@
 //! The plan of a robot, or of anybody whose path is known.
 
+mod doubt;
+
 use crate::error::PlanError;
 use ddl_core::{COORDINATE_LIMIT, HORIZON, Position, TIME_STEP, between};
+pub use doubt::PlanDoubt;
 use serde::{Deserialize, Serialize};
 
 /// The end of a forecast, seconds after the moment.

@@ -1,10 +1,14 @@
 //! What was assumed, dropped or doubted.
 
 use crate::error::DdlError;
+use crate::forecast::answer::Answer;
+use crate::forecast::joint::GivenPlan;
 use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
 use ddl_core::{OBSERVED, PedestrianName, PedestrianNames, Setting, Window};
 use ddl_data::{Clock, Misfit, PlausibilityWarning, SceneName};
 use ddl_memory::{Refusal, Unsaved};
+use ddl_scene::{Futures, Plan, PlanDoubt};
+use std::collections::BTreeSet;
 use std::fmt::{Display, Formatter, Result};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -37,6 +41,10 @@ pub enum Note {
     EndsEarly { end: String, last: String },
     /// Motions unlike the training motions.
     Unfamiliar { count: usize, of: usize, first: String },
+    /// A plan that may not be what its author means, with its name if it has one.
+    Plan { name: String, doubt: PlanDoubt },
+    /// The pedestrian who is said to follow a plan is not in the tracks.
+    MissingEgo { name: PedestrianName },
     /// Pedestrians too far away for the area of grids, at least one; nobody gave the area.
     OutsideArea { count: usize, of: usize, first: PedestrianName },
     /// The memory of a file is of another place.
@@ -75,6 +83,47 @@ impl MisfitNote {
 }
 
 impl Note {
+    /// What is doubtful of plans in a scene, whose pedestrian `ego` follows them if there is one: of the doubts of each
+    /// [kind](PlanDoubt::kind) that of the first plan.
+    pub fn of_plans<'a>(
+        plans: impl IntoIterator<Item = (&'a str, &'a Plan)>,
+        futures: &Futures,
+        ego: Option<usize>,
+    ) -> Vec<Self> {
+        let doubts = plans
+            .into_iter()
+            .flat_map(|(name, plan)| futures.doubts(plan, ego).into_iter().map(move |doubt| (name.to_owned(), doubt)));
+        let mut kinds = BTreeSet::new();
+        let first = doubts.filter(|(_, doubt)| kinds.insert(doubt.kind()));
+        first.map(|(name, doubt)| Self::Plan { name, doubt }).collect()
+    }
+
+    /// That the pedestrian who is said to follow a plan is not in the window, if so.
+    pub fn of_ego(ego: Option<&PedestrianName>, window: &Window) -> Option<Self> {
+        let missing = ego.filter(|name| window.named(name).is_none());
+        missing.map(|name| Self::MissingEgo { name: name.clone() })
+    }
+
+    /// What is doubtful of a plan that the pedestrians of an answer respond to, if there is one.
+    pub fn of_given(given: Option<&GivenPlan>, window: &Window, answer: &Answer) -> Vec<Self> {
+        let (Some(GivenPlan { plan, ego }), Ok(futures)) = (given, answer.futures()) else {
+            return Vec::new();
+        };
+        let index = ego.as_ref().and_then(|name| window.named(name));
+        let plans = Self::of_plans([("", plan)], futures, index);
+        Self::of_ego(ego.as_ref(), window).into_iter().chain(plans).collect()
+    }
+
+    /// A word for remarks that are told once: those of one kind have the same.
+    pub fn key(&self) -> &'static str {
+        match self {
+            Self::Plan { doubt, .. } => doubt.kind(),
+            Self::MissingEgo { .. } => "ego",
+            Self::OutsideArea { .. } => "area",
+            _ => self.kind(),
+        }
+    }
+
     /// What to tell of those whom the [area](ddl_scene::Futures::area) of grids leaves out, if any.
     pub fn outside_area(left_out: &[usize], window: &Window) -> Option<Self> {
         let first = window.name(*left_out.first()?);
@@ -87,6 +136,7 @@ impl Note {
             Self::Implausible(_)
             | Self::Misfits { .. }
             | Self::Unfamiliar { .. }
+            | Self::Plan { .. }
             | Self::OutsideArea { .. }
             | Self::MemoryRefused { .. }
             | Self::MemoryUnwritten(_)
@@ -150,6 +200,13 @@ impl Display for Note {
                 "{count} of {of} motions are unlike the training motions (familiarity below {UNFAMILIAR_THRESHOLD}), \
                  first that of pedestrian {first}: their forecasts use little of the network, and their weights are \
                  flatter"
+            ),
+            Self::Plan { name, doubt } if name.is_empty() => write!(to, "the plan {doubt}"),
+            Self::Plan { name, doubt } => write!(to, "plan {name} {doubt}"),
+            Self::MissingEgo { name } => write!(
+                to,
+                "pedestrian {name}, who is said to follow the plan, is not there: it is taken to be that of somebody \
+                 who is not in the tracks"
             ),
             Self::OutsideArea { count, of, first } => write!(
                 to,

@@ -192,8 +192,9 @@ impl<M: Borrow<Ddl>> Session<M> {
         let answered = scene.push(frame, pedestrians, names, |window| {
             model.forecast_plainly(std::slice::from_ref(window), request).map(|mut answers| answers.remove(0))
         })?;
-        let (is_due, notes) = (scene.tracks.is_moment(), scene.notes(None));
+        let (is_due, mut notes) = (scene.tracks.is_moment(), scene.notes(None));
         let answer = answered.map(|(window, answer)| {
+            notes.extend(Note::of_given(self.request.plan(), &window, &answer));
             let answer = self.adapted(None, &window, answer);
             (window, answer)
         });
