@@ -35,7 +35,7 @@ pub use position::{
     COORDINATE_LIMIT, FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, between, bounds, distance,
     is_finite, is_frame, is_frame_step,
 };
-pub use quality::ObservationQuality;
+pub use quality::{ObservationQuality, OtherObservation};
 pub use region::AdaptiveRegions;
 pub use region_table::{Disc, RegionTable};
 pub use representative::{average_displacement, medoid};

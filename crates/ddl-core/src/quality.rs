@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::position::{HORIZON, TIME_STEP};
+use crate::position::{HORIZON, OBSERVED, Position, TIME_STEP, distance};
 
 /// How well a pedestrian was observed. The default is that of a row at each of the 8 steps: nothing was estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -31,5 +31,34 @@ impl ObservationQuality {
     /// Standard deviation of a coordinate (m) that the observation adds to a forecast `seconds` ahead.
     pub fn deviation_after(self, seconds: f64) -> f64 {
         self.deviation.hypot(seconds * self.velocity_deviation)
+    }
+}
+
+/// Another explanation of the rows of a pedestrian: the last one may be wrong, or another's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OtherObservation {
+    /// Positions (m), oldest first.
+    pub positions: [Position; OBSERVED],
+    /// How well they are known.
+    pub quality: ObservationQuality,
+    /// Weight of this explanation in a forecast, 0 to 1; that of the observation itself is the rest. A doubtful row
+    /// weighs less than it is likely, so that whoever was about to come near is not missed.
+    pub weight: f64,
+}
+
+impl OtherObservation {
+    /// The quality of an observation at these 8 positions, beside which there is this one: it adds the deviations of
+    /// the last position and of the last step's velocity from their means.
+    pub(crate) fn beside(&self, positions: &[Position], quality: ObservationQuality) -> ObservationQuality {
+        let share = (self.weight * (1.0 - self.weight) / 2.0).sqrt();
+        let last = |track: &[Position]| track[OBSERVED - 1];
+        let step = |track: &[Position]| [0, 1].map(|axis| last(track)[axis] - track[OBSERVED - 2][axis]);
+        let apart = share * distance(last(positions), last(&self.positions));
+        let velocities = share * distance(step(positions), step(&self.positions)) / TIME_STEP;
+        ObservationQuality {
+            deviation: quality.deviation.hypot(apart),
+            velocity_deviation: quality.velocity_deviation.hypot(velocities),
+            ..quality
+        }
     }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::WindowError;
 use crate::pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 use crate::position::{OBSERVED, Position, WINDOW, is_finite, is_frame, is_frame_step};
-use crate::quality::ObservationQuality;
+use crate::quality::{ObservationQuality, OtherObservation};
 
 /// 20 positions of an earlier pedestrian of the same place that moved like the one to forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +45,8 @@ pub struct Window {
     positions: Vec<Position>,
     /// One entry per pedestrian, or empty if nothing was estimated.
     qualities: Vec<ObservationQuality>,
+    /// Pedestrians with another explanation, by index.
+    others: Vec<(usize, OtherObservation)>,
     /// One list per pedestrian, or empty if nothing is remembered.
     remembered: Vec<Vec<RememberedTrack>>,
     /// Pedestrians that were observed too, but have no future here.
@@ -120,6 +122,7 @@ impl Window {
             names: PedestrianNames::default(),
             positions,
             qualities: Vec::new(),
+            others: Vec::new(),
             remembered: Vec::new(),
             bystanders: None,
         }
@@ -155,13 +158,54 @@ impl Window {
     }
 
     /// How well the i-th pedestrian was observed; nothing was estimated unless qualities are
-    /// [given](Self::with_qualities).
+    /// [given](Self::with_qualities). [Another explanation](Self::other) adds its deviation.
     ///
     /// # Panics
     /// If `i >= len()`.
     pub fn quality(&self, i: usize) -> ObservationQuality {
+        let own = self.own_quality(i);
+        self.other(i).map_or(own, |other| other.beside(self.observed(i), own))
+    }
+
+    fn own_quality(&self, i: usize) -> ObservationQuality {
         assert!(i < self.len(), "pedestrian {i} of {}", self.len());
         self.qualities.get(i).copied().unwrap_or_default()
+    }
+
+    /// The same window with other explanations of some pedestrians, by ascending index. The observed positions are those
+    /// of the likelier explanation.
+    ///
+    /// # Panics
+    /// When an index is out of range, or they do not ascend.
+    #[must_use]
+    pub fn with_others(self, others: Vec<(usize, OtherObservation)>) -> Self {
+        assert!(
+            others.is_sorted_by(|a, b| a.0 < b.0) && others.last().is_none_or(|last| last.0 < self.len()),
+            "indices"
+        );
+        Self { others, ..self }
+    }
+
+    /// The other explanation of the rows of the i-th pedestrian, if it is [doubtful](Self::with_others).
+    pub fn other(&self, i: usize) -> Option<&OtherObservation> {
+        let place = self.others.binary_search_by_key(&i, |other| other.0).ok()?;
+        Some(&self.others[place].1)
+    }
+
+    /// Whether some pedestrian has another explanation.
+    pub fn has_others(&self) -> bool {
+        !self.others.is_empty()
+    }
+
+    /// The window of the likelier explanations alone, and that of the others, in which those without one are the same.
+    #[must_use]
+    pub fn explanations(&self) -> [Window; 2] {
+        let likelier = self.clone().with_others(Vec::new());
+        let at = |i: usize, t: usize, position| self.other(i).map_or(position, |other| other.positions[t]);
+        let other = likelier.map_positions(|i, t, position| if t < OBSERVED { at(i, t, position) } else { position });
+        let quality = |i: usize| self.other(i).map_or_else(|| self.own_quality(i), |other| other.quality);
+        let qualities = (0..self.len()).map(quality).collect();
+        [likelier, other.with_qualities(qualities)]
     }
 
     /// The same window with bystanders: other pedestrians of the same 8 steps, whose futures are not known. A
@@ -296,7 +340,8 @@ impl Window {
         let observed = scene.iter().flat_map(|(window, i)| window.observed(*i)).copied().collect();
         let window = self.of_same(self.frames[..OBSERVED].to_vec(), pedestrians, observed);
         window
-            .with_qualities(scene.iter().map(|(window, i)| window.quality(*i)).collect())
+            .with_qualities(scene.iter().map(|(window, i)| window.own_quality(*i)).collect())
+            .with_others(others_of(scene.iter().map(|(window, i)| window.other(*i))))
             .with_remembered(|i| scene[i].0.remembered(scene[i].1).to_vec())
     }
 
@@ -333,17 +378,22 @@ impl Window {
         let pedestrians = indices.iter().map(|&i| self.pedestrians[i]).collect();
         let positions = indices.iter().flat_map(|&i| self.track(i)).copied().collect();
         let window = self.of_same(self.frames.clone(), pedestrians, positions);
-        let window = window.with_qualities(indices.iter().map(|&i| self.quality(i)).collect());
+        let window = window.with_qualities(indices.iter().map(|&i| self.own_quality(i)).collect());
+        let window = window.with_others(others_of(indices.iter().map(|&i| self.other(i))));
         let window = window.with_remembered(|i| self.remembered(indices[i]).to_vec());
         let bystanders = self.bystanders.clone();
         Some(Self { bystanders, ..window })
     }
 
     /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from 0, position (m).
-    /// The results of `f` are not checked; they must be finite. Remembered tracks and bystanders are unchanged.
+    /// The results of `f` are not checked; they must be finite. It also replaces the positions of other explanations.
+    /// Remembered tracks and bystanders are unchanged.
     #[must_use]
     pub fn map_positions(&self, mut f: impl FnMut(usize, usize, Position) -> Position) -> Window {
         let mut mapped = self.clone();
+        for (i, other) in &mut mapped.others {
+            other.positions = std::array::from_fn(|step| f(*i, step, other.positions[step]));
+        }
         let steps = self.steps();
         for (index, position) in mapped.positions.iter_mut().enumerate() {
             *position = f(index / steps, index % steps, *position);
@@ -352,14 +402,18 @@ impl Window {
     }
 
     /// The window in reversed time: every pedestrian walks its track from the end to the start, at the same frames.
-    /// Remembered tracks, bystanders and qualities are dropped, because they belong to the end.
+    /// Remembered tracks, bystanders, qualities and other explanations are dropped, because they belong to the end.
     #[must_use]
     pub fn reversed(&self) -> Window {
         let alone = self.clone().with_remembered(|_| Vec::new()).with_bystanders(None);
-        let mut reversed = alone.with_qualities(Vec::new());
+        let mut reversed = alone.with_qualities(Vec::new()).with_others(Vec::new());
         for track in reversed.positions.chunks_exact_mut(self.steps()) {
             track.reverse();
         }
         reversed
     }
+}
+
+fn others_of<'a>(others: impl Iterator<Item = Option<&'a OtherObservation>>) -> Vec<(usize, OtherObservation)> {
+    others.enumerate().filter_map(|(i, other)| Some((i, *other?))).collect()
 }

@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
-use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_frame};
+use ddl_core::{OBSERVED, OtherObservation, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_frame};
 
 use crate::clock::{Clock, ClockError};
 use crate::error::LiveError;
-use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, TimedPosition};
+use crate::observe::{
+    self, Misfit, MisfitTreatment, ON_STEP, ObservedPositions, ObservedTrack, RecordingNoise, TimedPosition,
+};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -76,6 +78,8 @@ pub struct LiveTracks {
     max_age: Option<f64>,
     /// Least time between two windows, in ticks; `None` for windows at common frames, or every step.
     interval: Option<f64>,
+    /// Whether windows hold other explanations of doubtful rows.
+    are_rows_doubted: bool,
     /// The last frame number pushed, and its tick.
     last_number: Option<i64>,
     last_frame: Option<i64>,
@@ -130,6 +134,7 @@ impl LiveTracks {
             completeness: Completeness::Whole,
             max_age: None,
             interval: Some(0.0),
+            are_rows_doubted: true,
             last_number: None,
             last_frame: None,
             is_moment: false,
@@ -190,6 +195,12 @@ impl LiveTracks {
         // Less than a tick is every frame.
         let interval = ticks.map(|ticks| if ticks < 1.0 { 0.0 } else { ticks }).or(self.interval);
         Self { interval, ..self }
+    }
+
+    /// The same tracks, whose windows hold every row that is not left out as a fact.
+    #[must_use]
+    pub(crate) fn without_doubt(self) -> Self {
+        Self { are_rows_doubted: false, ..self }
     }
 
     /// Whether frames show several pedestrians, or each pedestrian has a clock of its own, by the frames so far.
@@ -382,17 +393,19 @@ impl LiveTracks {
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame.filter(|_| self.is_moment)?;
         let (time, step) = (last as f64, self.clock.frame_step());
-        let (mut ids, mut positions, mut qualities) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut ids, mut positions, mut qualities, mut others) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (id, pedestrian) in &self.pedestrians {
             let LivePedestrian { last_row, track } = pedestrian.as_ref();
             let age = time - track.last_time();
             // A wrong position says that the pedestrian is there.
             let max_age = self.max_age.unwrap_or_else(|| track.usual_interval().max(step as f64));
             let is_present = age == 0.0 || age < max_age || (*last_row == last && age <= max_age);
+            let observed = |track: &ObservedTrack| track.observed(time, step as f64, self.tick_time(), &self.noise);
             if is_present
-                && let Some(observed) = track.observed(time, step as f64, self.tick_time(), &self.noise)
+                && let Some((observed, other)) = self.explained(track, observed)
                 && (self.completeness == Completeness::Partial || observed.quality.is_whole())
             {
+                others.extend(other.map(|other| (ids.len(), other)));
                 ids.push(*id);
                 positions.extend(observed.positions);
                 qualities.push(observed.quality);
@@ -403,7 +416,27 @@ impl LiveTracks {
         }
         let frames = (1 - OBSERVED as i64..=0).map(|t| last + t * step).collect();
         let window = Window::cut(Arc::clone(&self.name), step, frames, ids, positions);
-        Some(window.with_names(self.names.clone()).with_qualities(qualities))
+        Some(window.with_names(self.names.clone()).with_qualities(qualities).with_others(others))
+    }
+
+    /// The likelier explanation of a track, and the other one if its last row is doubtful.
+    fn explained(
+        &self,
+        track: &ObservedTrack,
+        observed: impl Fn(&ObservedTrack) -> Option<ObservedPositions>,
+    ) -> Option<(ObservedPositions, Option<OtherObservation>)> {
+        let mut likelier = observed(track)?;
+        let without = if self.are_rows_doubted { track.otherwise() } else { None };
+        let other = without.and_then(|(track, mut weight, is_likelier)| {
+            let mut other = observed(track)?;
+            if is_likelier {
+                std::mem::swap(&mut likelier, &mut other);
+                weight = 1.0 - weight;
+            }
+            let ObservedPositions { positions, quality } = other;
+            Some(OtherObservation { positions, quality, weight })
+        });
+        Some((likelier, other))
     }
 }
 

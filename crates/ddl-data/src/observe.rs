@@ -1,5 +1,6 @@
 //! What was observed of a pedestrian at a moment: an estimate from the rows of its track up to then.
 
+mod doubt;
 mod estimate;
 mod exchange;
 mod misfit;
@@ -7,7 +8,7 @@ mod motion;
 mod noise;
 mod track;
 
-pub(crate) use estimate::ON_STEP;
+pub(crate) use estimate::{ON_STEP, ObservedPositions};
 pub(crate) use exchange::exchanged;
 pub use misfit::{Misfit, MisfitTreatment};
 pub use noise::RecordingNoise;

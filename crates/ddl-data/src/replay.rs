@@ -69,7 +69,7 @@ impl Recording {
     pub(crate) fn windows_with_futures(&self) -> Vec<Window> {
         let futures = self.futures();
         let mut windows = Vec::new();
-        let tracks = self.live_tracks().with_completeness(Completeness::Partial);
+        let tracks = self.live_tracks().with_completeness(Completeness::Partial).without_doubt();
         let _ = self.observe_each(tracks, |window| windows.extend(self.with_future(&window, &futures)));
         windows
     }

@@ -40,6 +40,14 @@ impl JointMixture {
         mean.map(|sum| sum / total)
     }
 
+    /// The hypothesis with the largest share in one future, as `i * K + h`; `pair` = `i * K + k`.
+    pub fn largest(&self, pair: usize) -> usize {
+        let hypotheses = self.weights.len();
+        let shares = &self.shares[pair * hypotheses..][..hypotheses];
+        let largest = (0..hypotheses).max_by(|&a, &b| shares[a].total_cmp(&shares[b])).unwrap_or(0);
+        pair / hypotheses * hypotheses + largest
+    }
+
     /// The scales `[N][12]` (m) of the Student's t around the paths of the futures, from those around the hypotheses:
     /// the squared distance of the hypotheses from their mixture is added to the variance. `None` without a spread.
     pub fn scales(&self, forecast: &Forecast) -> Option<Vec<f64>> {

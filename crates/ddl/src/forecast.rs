@@ -2,6 +2,7 @@
 
 pub(crate) mod answer;
 pub(crate) mod certified;
+pub(crate) mod explanations;
 pub(crate) mod joint;
 pub(crate) mod name;
 pub(crate) mod request;

@@ -118,15 +118,19 @@ impl TrackNoise {
             let expected = self.motions[level].expected_after(seconds);
             if counts {
                 let variance = expected.variance + noise * noise;
-                let distance = expected.distance(position);
-                let likelihood =
-                    -(TAILS + 2.0) / 2.0 * (distance * distance / (variance * TAILS)).ln_1p() - variance.ln();
+                let likelihood = log_likelihood(expected.distance(position), variance);
                 self.evidence[level] += likelihood;
                 recording.evidence[level] += likelihood;
             }
             self.motions[level] = expected.corrected(position, noise);
         }
     }
+}
+
+/// Log-likelihood, but for a constant, of a row so far (m) from where it was expected, with the variance (m²) of a
+/// coordinate there.
+pub(super) fn log_likelihood(distance: f64, variance: f64) -> f64 {
+    -(TAILS + 2.0) / 2.0 * (distance * distance / (variance * TAILS)).ln_1p() - variance.ln()
 }
 
 /// What each level must be likelier by than the usual one.

@@ -4,9 +4,10 @@ use std::collections::VecDeque;
 
 use ddl_core::{OBSERVED, Position, between, distance as distance_between};
 
+use crate::observe::doubt::{Doubt, Fit, WRONG};
 use crate::observe::misfit::MisfitTreatment;
 use crate::observe::motion::MotionState;
-use crate::observe::noise::{NoiseLevel, RecordingNoise, TrackNoise};
+use crate::observe::noise::{NoiseLevel, RecordingNoise, TrackNoise, log_likelihood};
 
 /// Distance between an expected and a true position that no noise explains (m) ...
 const SURPRISE: f64 = 0.5;
@@ -61,8 +62,8 @@ pub(crate) struct ObservedTrack {
     pub(super) noise: TrackNoise,
     /// The fastest speed of late.
     pace: FastestSpeed,
-    /// If the last row was taken for a sudden turn: the noise before it.
-    turned: Option<Box<SuddenTurn>>,
+    /// Another explanation of the last row.
+    doubt: Option<Box<Doubt>>,
     /// Rows left out since the last one that was not: the beginning of another track?
     suspects: Vec<Suspect>,
 }
@@ -73,13 +74,6 @@ struct FastestSpeed {
     speed: f64,
     /// In ticks.
     time: f64,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-struct SuddenTurn {
-    before: TrackNoise,
-    /// Distance of the row from where the pedestrian was expected (m).
-    distance: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -97,17 +91,6 @@ pub(crate) struct Expectation {
     pub(crate) reach: f64,
 }
 
-/// How far a row is from where a pedestrian may be.
-#[derive(Debug, Clone, Copy)]
-struct Fit {
-    /// Distance from where the pedestrian was expected (m).
-    distance: f64,
-    /// Whether it is about there.
-    is_expected: bool,
-    /// Whether a pedestrian that turns may be there.
-    is_turn: bool,
-}
-
 impl ObservedTrack {
     /// A track that begins.
     #[must_use]
@@ -117,7 +100,7 @@ impl ObservedTrack {
             rows: [row].into(),
             noise: TrackNoise::of_first(position),
             pace: FastestSpeed { speed: 0.0, time },
-            turned: None,
+            doubt: None,
             suspects: Vec::new(),
         }
     }
@@ -138,25 +121,67 @@ impl ObservedTrack {
             return None;
         }
         let fit = self.fit(row, tick_time, known);
-        if (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time, known) {
-            self.suspects.clear();
-            let turn = || SuddenTurn { before: self.noise.clone(), distance: fit.distance };
-            self.turned = (!fit.is_expected).then(|| Box::new(turn()));
-            self.accept(row, tick_time, known, recording);
-            return None;
-        }
-        if let Some(turn) = self.turned.take() {
-            // Either the last row or this one is wrong.
-            let mut without = Self { noise: turn.before, ..self.clone() };
-            let wrong = without.rows.pop_back()?;
-            if without.fit(row, tick_time, known).is_expected {
-                without.accept(row, tick_time, known, recording);
-                *self = without;
-                return Some((wrong.time, turn.distance, MisfitTreatment::LeftOut));
+        let fits = (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time, known);
+        if let Some(mut doubt) = self.doubt.take() {
+            let other = doubt.other.fit(row, tick_time, known);
+            // This row may be the wrong one.
+            let right = if fits { fit.likelihood.max(WRONG) } else { WRONG };
+            let likelihood = doubt.evidence + other.likelihood;
+            if other.is_expected && likelihood > right {
+                let misfit = (doubt.time, doubt.distance, doubt.treatment);
+                doubt.other.take(row, other, tick_time, known, recording);
+                *self = doubt.other;
+                return Some(misfit);
+            }
+            if fits
+                && other.likelihood > fit.likelihood
+                && likelihood > WRONG
+                && let Some(weight) = fit.doubt((row.time - self.last_time()) * tick_time)
+            {
+                // The row before is still the doubtful one.
+                doubt.evidence = likelihood - right;
+                doubt.other.accept(row, tick_time, known, &mut recording.clone());
+                doubt.weight = doubt.weight.max(weight);
+                self.suspects.clear();
+                self.accept(row, tick_time, known, recording);
+                self.doubt = Some(doubt);
+                return None;
             }
         }
-        let (distance, treatment) = self.doubt(row, fit.distance, tick_time, known, recording);
+        if fits {
+            self.take(row, fit, tick_time, known, recording);
+            return None;
+        }
+        let (distance, treatment) = self.leave_out(row, fit.distance, tick_time, known, recording);
         Some((row.time, distance, treatment))
+    }
+
+    /// Takes a row that fits, perhaps with doubt.
+    fn take(
+        &mut self,
+        row: TimedPosition,
+        fit: Fit,
+        tick_time: f64,
+        known: &RecordingNoise,
+        recording: &mut RecordingNoise,
+    ) {
+        self.suspects.clear();
+        let doubt = fit.doubt((row.time - self.last_time()) * tick_time).map(|weight| Doubt {
+            other: self.clone(),
+            evidence: fit.evidence(),
+            weight,
+            time: row.time,
+            distance: fit.distance,
+            treatment: MisfitTreatment::LeftOut,
+        });
+        self.accept(row, tick_time, known, recording);
+        self.doubt = doubt.map(Box::new);
+    }
+
+    /// The track by another explanation of its last row, the weight of that, and whether it is the likelier one; `None`
+    /// where the row is not doubtful.
+    pub(crate) fn otherwise(&self) -> Option<(&Self, f64, bool)> {
+        self.doubt.as_ref().map(|doubt| (&doubt.other, doubt.weight, doubt.is_likelier()))
     }
 
     /// Where the pedestrian is expected at a time; `None` if too few rows show its speed, or the last is too old.
@@ -165,21 +190,23 @@ impl ObservedTrack {
         if self.rows.len() < SHOW_SPEED || seconds > LONGEST_DOUBT {
             return None;
         }
-        let (expected, margin) = self.expected_after(seconds, known);
-        Some(Expectation { position: expected.position, reach: ACCELERATION * seconds * seconds + margin })
+        let (expected, deviation) = self.expected_after(seconds, known);
+        let reach = ACCELERATION * seconds * seconds + DEVIATIONS * deviation;
+        Some(Expectation { position: expected.position, reach })
     }
 
-    /// The motion expected some seconds after the last row, and how far off a row may be then for its noise (m).
+    /// The motion expected some seconds after the last row, and the standard deviation of a row from it (m).
     fn expected_after(&self, seconds: f64, known: &RecordingNoise) -> (MotionState, f64) {
         let level = self.level(known);
         let expected = self.noise.motion(level).expected_after(seconds);
         let noise = level.walk().noise;
-        (expected, DEVIATIONS * (expected.variance + noise * noise).sqrt())
+        (expected, (expected.variance + noise * noise).sqrt())
     }
 
     fn fit(&self, row: TimedPosition, tick_time: f64, known: &RecordingNoise) -> Fit {
         let seconds = (row.time - self.last_time()) * tick_time;
-        let (expected, margin) = self.expected_after(seconds, known);
+        let (expected, deviation) = self.expected_after(seconds, known);
+        let margin = DEVIATIONS * deviation;
         let distance = expected.distance(row.position);
         let own = self.pace.speed.max(expected.speed());
         // A speed not yet seen may be that of a runner.
@@ -192,10 +219,13 @@ impl ObservedTrack {
         // The estimate lags behind a runner who starts.
         let ahead = self.ahead(row.time).filter(|_| self.rows.len() >= SHOW_SPEED);
         let off = ahead.map_or(distance, |ahead| distance.min(distance_between(ahead, row.position)));
+        let likelihood = log_likelihood(off, deviation * deviation);
         let way = distance_between(last, row.position);
         let near = off <= SURPRISE + ACCELERATION * seconds * seconds + margin;
         Fit {
             distance,
+            deviation,
+            likelihood,
             is_expected: near && way <= SURPRISE + fastest * seconds + margin,
             is_turn: way <= turning * seconds + margin,
         }
@@ -224,7 +254,7 @@ impl ObservedTrack {
     }
 
     /// Leaves a row out, or begins anew where rows agree.
-    fn doubt(
+    fn leave_out(
         &mut self,
         row: TimedPosition,
         distance: f64,
@@ -287,6 +317,9 @@ impl ObservedTrack {
         // The last row before them shows where the pedestrian came from.
         while self.rows.get(1).is_some_and(|row| row.time <= oldest) {
             self.rows.pop_front();
+        }
+        if let Some(doubt) = &mut self.doubt {
+            doubt.other.forget_before(time, step);
         }
     }
 

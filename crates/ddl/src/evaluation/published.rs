@@ -105,6 +105,7 @@ impl Published {
                 let samples = rollout.hypotheses;
                 let walked = Walked {
                     spread: None,
+                    origins: Vec::new(),
                     shares: vec![1.0; window.len()],
                     familiarity: None,
                     config,

@@ -45,6 +45,8 @@ pub(crate) struct Walked<'a> {
     pub(crate) familiarity: Option<Vec<f64>>,
     /// `None`: that of the calibration.
     pub(crate) spread: Option<Spread>,
+    /// `[N][K]`: start and bounds of a path that begins elsewhere than the window ends; or empty.
+    pub(crate) origins: Vec<Option<(Position, MotionBounds<f64>)>>,
     pub(crate) weights: Vec<f64>,
     pub(crate) goals: Vec<Position>,
 }
@@ -75,18 +77,23 @@ impl Walked<'_> {
             return Ok(forecast);
         };
         let forecast = forecast.with_familiarity(familiarity.clone())?;
-        if hypotheses == 1 {
-            return Ok(forecast);
+        match self.spread.clone().or_else(|| self.calibrated()) {
+            Some(spread) => Ok(forecast.with_spread(spread)?),
+            None => Ok(forecast),
         }
-        if let Some(spread) = &self.spread {
-            return Ok(forecast.with_spread(spread.clone())?);
+    }
+
+    /// The spread that is calibrated; `None` for one hypothesis.
+    pub(crate) fn calibrated(&self) -> Option<Spread> {
+        if self.hypotheses == 1 {
+            return None;
         }
         let calibration = Calibration::fitted();
         let time_step = self.config.time_step;
         let pace = |i: usize| Pace::of(self.window.observed(i), time_step, self.window.quality(i).uncertainty());
-        let paces: Vec<Pace> = (0..pedestrians).map(pace).collect();
-        let goals = self.goals.par_chunks_exact(hypotheses);
-        let pairs = goals.zip(self.weights.par_chunks_exact(hypotheses)).enumerate();
+        let paces: Vec<Pace> = (0..self.window.len()).map(pace).collect();
+        let goals = self.goals.par_chunks_exact(self.hypotheses);
+        let pairs = goals.zip(self.weights.par_chunks_exact(self.hypotheses)).enumerate();
         let scales = pairs
             .flat_map_iter(|(i, (goals, weights))| {
                 let spread = calibration.spread(paces[i], self.window.observed(i), goals, weights, time_step);
@@ -96,7 +103,7 @@ impl Walked<'_> {
                     .map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
             })
             .collect();
-        Ok(forecast.with_spread(Spread { scales, paces, regions: Calibration::shared_regions() })?)
+        Some(Spread { scales, paces, regions: Calibration::shared_regions() })
     }
 
     /// The forecast, and its certificates if they are asked for.
@@ -138,7 +145,12 @@ impl Walked<'_> {
         Ok((positions, certificates))
     }
 
-    fn bounds(&self, i: usize) -> MotionBounds<f64> {
+    /// Where its paths start, unless they have another origin (m).
+    pub(crate) fn start(&self, i: usize) -> Position {
+        self.window.observed(i)[OBSERVED - 1]
+    }
+
+    pub(crate) fn bounds(&self, i: usize) -> MotionBounds<f64> {
         let observed = self.window.observed(i);
         let bounds = motion_bounds(observed, self.config.time_step, self.shares[i]);
         match self.config.frame {
@@ -159,12 +171,14 @@ impl Walked<'_> {
         let pairs = factors.par_chunks_exact(HORIZON).enumerate().zip(positions.par_chunks_exact_mut(HORIZON));
         let results = pairs.map(|((pair, factors), path)| {
             let (i, hypothesis) = (pair / self.hypotheses, pair % self.hypotheses);
+            let origin = self.origins.get(pair).copied().flatten();
+            let (start, bounds) = origin.unwrap_or_else(|| (self.start(i), bounds[i]));
             let approach = GoalApproach {
-                start: self.window.observed(i)[OBSERVED - 1],
+                start,
                 goal: self.goals[pair],
                 sigma: self.config.sigma,
                 time_step: self.config.time_step,
-                bounds: bounds[i],
+                bounds,
             };
             integrate(&approach, factors, path).map_err(|cause| {
                 failed(CertificateError::Walk {
@@ -216,6 +230,7 @@ mod tests {
             shares: vec![0.0; 2],
             familiarity: Some(vec![0.5, 0.25]),
             spread: None,
+            origins: Vec::new(),
             weights: vec![0.75, 0.25, 0.4, 0.6],
             goals: goals.clone(),
         };

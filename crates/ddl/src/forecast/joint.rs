@@ -48,6 +48,9 @@ impl<'a> Walked<'a> {
             let mixed = steps().map(|(pair, t)| mixture.mean(pair, |i, h| of_step(i, h, t)));
             self.factors = Some(mixed.collect());
         }
+        if !self.origins.is_empty() {
+            self.origins = (0..pairs).map(|pair| self.origins[mixture.largest(pair)]).collect();
+        }
         let goals = (0..pairs).map(|pair| mixture.mean(pair, |i, h| self.goals[i * self.hypotheses + h]));
         self.goals = goals.collect();
         self.weights = mixture.weights.repeat(self.window.len());

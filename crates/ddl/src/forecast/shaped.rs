@@ -55,6 +55,7 @@ pub(crate) fn walked<'a>(
         shares,
         familiarity: Some(familiarity),
         spread: None,
+        origins: Vec::new(),
         config: network.config(),
         rule,
         window,

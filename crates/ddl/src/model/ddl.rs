@@ -4,6 +4,7 @@ use crate::device::Device;
 use crate::error::DdlError;
 use crate::forecast::answer::Answer;
 use crate::forecast::certified::{self, CertificateError, Walked};
+use crate::forecast::explanations;
 use crate::forecast::joint;
 use crate::forecast::name::NAME;
 use crate::forecast::request::{Motions, Request};
@@ -134,13 +135,15 @@ impl Ddl {
             });
             return answers.collect();
         }
-        let goals = self.goals.goals(windows)?;
-        if request.motions == Motions::One {
-            let walked = self.neutral(windows, sets::with_central_only(windows, &goals));
+        let is_one = request.motions == Motions::One;
+        let apart = explanations::apart(windows, !is_one);
+        let goals = self.goals.goals(&apart)?;
+        if is_one {
+            let walked = self.neutral(&apart, sets::with_central_only(&apart, &goals));
             return walked.map(|walked| Ok(Answer::of_each(walked.certified(request.certificates)?))).collect();
         }
-        let walked = shaped::walked(&*self.network, windows, self.guided(windows, goals), StepRule::Bounded)?;
-        let answers = walked.map(|walked| {
+        let walked = shaped::walked(&*self.network, &apart, self.guided(&apart, goals), StepRule::Bounded)?;
+        let answers = explanations::together(windows, walked.collect()).map(|walked| {
             if request.is_joint() {
                 return walked.joint_answer(request.plan(), request.certificates);
             }
@@ -175,6 +178,7 @@ impl Ddl {
                 shares: vec![0.0; window.len()],
                 familiarity: Some(self.goals.familiarity(window)),
                 spread: None,
+                origins: Vec::new(),
                 factors: Some(vec![[1.0, 0.0, 1.0]; goals.len() * HORIZON]),
                 weights: vec![1.0; goals.len()],
                 goals,
@@ -211,6 +215,7 @@ impl Forecaster for Ddl {
     }
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        self.forecast_towards(windows, self.goals.goals(windows)?, StepRule::Bounded)
+        let answers = self.forecast_plainly(windows, &Request::default())?;
+        Ok(answers.into_iter().map(Answer::into_forecast).collect())
     }
 }
