@@ -130,7 +130,8 @@ impl MixtureScene {
         order.sort_unstable_by(|&i, &j| names[i].cmp(&names[j]));
         let mut people: Vec<Hypotheses> = order.iter().map(|&i| Hypotheses::of(window, forecast, i)).collect();
         let mut seeds: Vec<u64> = order.iter().map(|&i| seed(&names[i])).collect();
-        let mut tracks: Vec<Option<&[Position]>> = order.iter().map(|&i| Some(window.observed(i))).collect();
+        let track = |&i: &usize| (!window.quality(i).is_hardly_observed()).then(|| window.observed(i));
+        let mut tracks: Vec<Option<&[Position]>> = order.iter().map(track).collect();
         if let Some(plan) = plan {
             let path = std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position);
             let radius = plan.points().iter().map(|point| point.radius).fold(0.0, f64::max);
