@@ -109,3 +109,44 @@ pub(crate) fn goals(window: &Window, i: usize, clusters: usize) -> Result<GoalSe
     let set = GoalSet::from_endpoints(&frame, &ends, &weights, clusters).map_err(failed)?;
     Ok(reach::clamped(set, observed, TIME_STEP))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use super::*;
+    use ddl_core::{ObservationQuality, PedestrianId, RememberedTrack};
+
+    /// The mean way to the goals of somebody at (5, 2) with this velocity, known so well, and these earlier pedestrians,
+    /// who passed so far from there and went on by so much in 4.8 s.
+    fn way(velocity: f64, velocity_deviation: f64, earlier: &[(f64, Position)]) -> Position {
+        let track = (0..8).map(|t| [5.0 + 0.4 * velocity * (f64::from(t) - 7.0), 2.0]).collect();
+        let quality = ObservationQuality { unseen: 7, velocity_deviation, ..ObservationQuality::default() };
+        let window = Window::new("yard", 0, 1, vec![PedestrianId(3)], vec![track]).unwrap();
+        let remembered = |&(aside, to): &(f64, Position)| RememberedTrack {
+            track: std::array::from_fn(|t| [0, 1].map(|axis| to[axis] * (t as f64 - 7.0) / 12.0)),
+            distance: aside * aside,
+        };
+        let window = window.with_qualities(vec![quality]);
+        let window = window.with_remembered(|_| earlier.iter().map(remembered).collect());
+        let goals = goals(&window, 0, 20).unwrap();
+        let sum = |axis: usize| goals.goals().iter().zip(goals.weights()).map(|(goal, w)| w * goal[axis]).sum::<f64>();
+        [sum(0) - 5.0, sum(1) - 2.0]
+    }
+
+    /// The better the velocity of 1.2 m/s is known, the nearer the goals are to 5.8 m ahead. One who passed at the same
+    /// position counts as much as all that is known elsewhere, and each metre from there takes a factor.
+    #[test]
+    fn velocity_and_place_show_the_way() {
+        let ahead = [1.4, 0.8, 0.5, 0.32].map(|deviation| way(1.2, deviation, &[])[0]);
+        assert!(ahead.is_sorted() && ahead[0] > 1.0 && (5.0..6.0).contains(&ahead[3]), "{ahead:?}");
+        let nowhere = way(0.0, 1.41, &[]);
+        assert!(nowhere[0].hypot(nowhere[1]) < 0.2, "{nowhere:?}");
+        for (aside, share) in [(0.0, 0.5), (1.0, 1.0 / (1.0 + 1_f64.exp())), (6.0, 0.0)] {
+            let [x, y] = way(0.0, 1.41, &[(aside, [0.0, -6.0])]);
+            assert!((y + 6.0 * share).abs() < 0.3 && x.abs() < 0.3, "{aside}: {x} {y}");
+        }
+        let many = way(0.0, 1.41, &[(0.0, [-4.0, 4.0]); 9]);
+        assert!((many[0] + 3.6).abs() < 0.3 && (many[1] - 3.6).abs() < 0.3, "{many:?}");
+    }
+}
