@@ -177,7 +177,7 @@ fn straight_pedestrians_of_every_speed_are_forecast_as_well_as_by_straight_lines
 fn filled_in_positions_are_not_evidence() {
     let mut tracks = LiveTracks::new().with_completeness(Completeness::Partial);
     let pedestrian = PedestrianId(7);
-    assert_eq!(tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap(), None);
+    tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap();
     let window = tracks.push(1, [(pedestrian, [0.1, 0.0])]).unwrap().unwrap();
     assert_eq!(window.quality(0).unseen, 6);
     for model in builtin() {

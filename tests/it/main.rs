@@ -11,6 +11,7 @@ mod examples;
 #[cfg(unix)]
 mod faults;
 mod finished_benchmark;
+mod first_row;
 mod forecast;
 mod golden_forecasts;
 #[cfg(unix)]

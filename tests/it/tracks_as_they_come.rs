@@ -51,11 +51,14 @@ fn late_arrivals_and_holes_are_forecast_and_flagged() {
     let (lines, stderr) = forecast(&rows, "--last --whole");
     assert_eq!(lines.iter().map(unseen).collect::<Vec<_>>(), [[90, 1, 0], [90, 3, 0]]);
     assert!(!stderr.contains("of pedestrians"), "{stderr}");
-    // Pedestrians that have just appeared are counted.
+    // Pedestrians that have just appeared are forecast too.
     rows.push((90, 4, 3.0, 1.0));
-    let missing = "1 of the 4 pedestrians at frame 90 are not forecast";
-    let stderr = forecast(&rows, "--last").1;
-    assert!(stderr.contains(missing), "{stderr}");
+    let (lines, stderr) = forecast(&rows, "--last");
+    assert_eq!(unseen(&lines[3]), [90, 4, 7]);
+    assert!(
+        stderr.contains("of 4 forecasts 2 are of pedestrians tracked for less than 8 steps (1 of them"),
+        "{stderr}"
+    );
 }
 
 #[test]

@@ -18,6 +18,15 @@ pub struct ObservationQuality {
 }
 
 impl ObservationQuality {
+    /// Standard deviation of a coordinate of the velocity (m/s) above which it is hardly known.
+    const HARDLY_KNOWN: f64 = 0.3;
+
+    /// Whether the velocity is hardly known: only the last position was seen, in one row or in few that are close
+    /// together.
+    pub fn is_hardly_observed(self) -> bool {
+        self.unseen == OBSERVED - 1 && self.velocity_deviation > Self::HARDLY_KNOWN
+    }
+
     /// Whether the pedestrian has been tracked for all 8 steps.
     pub fn is_whole(self) -> bool {
         self.unseen == 0

@@ -25,7 +25,7 @@ const COMMON: u64 = 4;
 pub enum Completeness {
     /// Those tracked for all 8 steps: the first is 2.8 s old.
     Whole,
-    /// Those with two rows or more; earlier positions continue their motion backwards.
+    /// All, from their first row on; earlier positions continue their motion backwards.
     Partial,
 }
 
@@ -350,6 +350,26 @@ impl LiveTracks {
         (tick - pedestrian.last_row) as f64 * self.tick_time() > Self::LONGEST_GAP
     }
 
+    /// The window as if its pedestrians had been observed only for the last `rows` of its 8 steps, 1 to 8.
+    #[must_use]
+    pub fn last_rows(window: &Window, rows: usize) -> Window {
+        let mut tracks = Self::new().with_completeness(Completeness::Partial);
+        for step in OBSERVED.saturating_sub(rows.max(1))..OBSERVED {
+            // Cannot fail: the positions of a window are those of a frame.
+            let _ = tracks.push(step as i64, window.pedestrians().iter().copied().zip(window.positions_at(step)));
+        }
+        let Some(seen) = tracks.window() else { return window.clone() };
+        // Its pedestrians are in the order of their ids.
+        let place = |i: usize| seen.pedestrians().binary_search(&window.pedestrians()[i]);
+        let position = |i: usize, step: usize, position| match place(i) {
+            Ok(place) if step < OBSERVED => seen.observed(place)[step],
+            _ => position,
+        };
+        let qualities = (0..window.len()).map(|i| place(i).map_or(window.quality(i), |place| seen.quality(place)));
+        let bystanders = window.bystanders().map(|window| Self::last_rows(window, rows));
+        window.map_positions(position).with_qualities(qualities.collect()).with_bystanders(bystanders)
+    }
+
     /// A copy of the tracks with one more frame; `self` stays unchanged.
     ///
     /// # Errors
@@ -397,9 +417,9 @@ impl LiveTracks {
         for (id, pedestrian) in &self.pedestrians {
             let LivePedestrian { last_row, track } = pedestrian.as_ref();
             let age = time - track.last_time();
-            // A wrong position says that the pedestrian is there.
             let max_age = self.max_age.unwrap_or_else(|| track.usual_interval().max(step as f64));
-            let is_present = age == 0.0 || age < max_age || (*last_row == last && age <= max_age);
+            // A wrong position says that the pedestrian is there.
+            let is_present = *last_row == last || age < max_age;
             let observed = |track: &ObservedTrack| track.observed(time, step as f64, self.tick_time(), &self.noise);
             if is_present
                 && let Some((observed, other)) = self.explained(track, observed)

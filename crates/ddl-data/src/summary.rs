@@ -78,7 +78,7 @@ pub struct Summary {
     pub holes: usize,
     /// The longest gap.
     pub longest_hole: Option<Gap>,
-    /// Number of observations from which a pedestrian can be forecast, from two rows on ([`Completeness::Partial`]).
+    /// Number of observations from which a pedestrian can be forecast, from the first on ([`Completeness::Partial`]).
     pub to_forecast: usize,
     /// Of these, the number tracked for all 8 steps.
     pub seen_whole: usize,

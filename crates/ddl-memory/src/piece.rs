@@ -28,6 +28,8 @@ const REACH: f64 = 30.0;
 pub(crate) struct FirstMotion {
     now: Position,
     velocities: [f32; VELOCITIES],
+    /// How many components are compared: all, or only those of the position.
+    compared: usize,
 }
 
 /// Whether a position is close enough to the origin for distances in `f32` to be finite.
@@ -50,7 +52,13 @@ impl FirstMotion {
                 velocity(0, early, 0),
                 velocity(0, early, 1),
             ],
+            compared: COMPONENTS,
         }
+    }
+
+    /// Any motion at this position.
+    pub(crate) fn at(now: Position) -> Self {
+        Self { now, velocities: [0.0; VELOCITIES], compared: COMPONENTS - VELOCITIES }
     }
 
     /// All components, with the position relative to an origin. In `f32` they are exact to micrometres near that
@@ -149,7 +157,7 @@ impl Piece {
         let origin = self.path.get(NOW).copied().unwrap_or_default();
         let wanted = motion.from(origin);
         let mut distances = [0.0; LANES];
-        for (wanted, lanes) in wanted.into_iter().zip(&self.motions) {
+        for (wanted, lanes) in wanted.into_iter().zip(&self.motions).take(motion.compared) {
             for lane in 0..LANES {
                 let difference = wanted - lanes[lane];
                 distances[lane] += difference * difference;

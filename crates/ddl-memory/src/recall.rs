@@ -27,12 +27,22 @@ impl SceneMemory {
         own: Option<PedestrianId>,
         count: usize,
     ) -> Vec<RememberedTrack> {
-        let motion = FirstMotion::of(observed);
+        self.recall_motion(&FirstMotion::of(observed), own, count)
+    }
+
+    /// As [`recall`](Self::recall), of a pedestrian at this position whose motion is not known: the squared distance is
+    /// `|dp|² / (1 m)²`.
+    #[must_use]
+    pub fn recall_at(&self, position: Position, own: Option<PedestrianId>, count: usize) -> Vec<RememberedTrack> {
+        self.recall_motion(&FirstMotion::at(position), own, count)
+    }
+
+    fn recall_motion(&self, motion: &FirstMotion, own: Option<PedestrianId>, count: usize) -> Vec<RememberedTrack> {
         let running = self.running.iter().filter(|(id, _)| Some(**id) != own);
         let running = running.map(|(_, running)| &running.track);
         let mut near: Vec<(f32, usize, &Piece)> = Vec::new();
         for (age, track) in self.ended.iter().chain(running).enumerate() {
-            match track.nearest(&motion) {
+            match track.nearest(motion) {
                 Some((distance, piece)) if distance < MAX_SQUARED_DISTANCE => {
                     near.push((distance, age, piece));
                 }
@@ -46,7 +56,7 @@ impl SceneMemory {
         }
         near.sort_unstable_by(by_distance);
         let remembered = |(distance, _, piece): (f32, usize, &Piece)| RememberedTrack {
-            track: piece.segment(piece.nearest_lane(&motion)),
+            track: piece.segment(piece.nearest_lane(motion)),
             distance: f64::from(distance),
         };
         near.into_iter().map(remembered).collect()

@@ -71,9 +71,15 @@ impl SceneMemory {
     /// The window with at most `count` remembered tracks per pedestrian; their own running tracks are left out.
     #[must_use]
     pub fn recalling(&self, window: Window, count: usize) -> Window {
-        let recall = |i: usize| match window.observed(i).first_chunk() {
-            Some(observed) => self.recall(observed, Some(window.pedestrians()[i]), count),
-            None => Vec::new(),
+        let recall = |i: usize| {
+            let own = Some(window.pedestrians()[i]);
+            match window.observed(i).first_chunk() {
+                Some(observed) if window.quality(i).is_hardly_observed() => {
+                    self.recall_at(observed[OBSERVED - 1], own, count)
+                }
+                Some(observed) => self.recall(observed, own, count),
+                None => Vec::new(),
+            }
         };
         let remembered: Vec<_> = (0..window.len()).map(recall).collect();
         let mut remembered = remembered.into_iter();

@@ -181,7 +181,7 @@ def test_live_refuses_wrong_frames_and_continues(forecaster):
     forecast = live.observe(7, ["a", "b"], [[2.8, 0], [5, 2.8]])
     assert forecast is not None and forecast.ids.tolist() == ["a", "b"]
     live.clear()
-    assert live.observe(0, ["a"], [[0, 0]]) is None
+    assert live.observe(0, ["a"], [[0, 0]]).unseen.tolist() == [7]
     with pytest.raises(ValueError, match=r"\(n, 2\)"):
         live.observe(1, ["a", "b", "c"], [[0, 1, 2], [3, 4, 5]])
     with pytest.raises(ValueError, match="neither"):

@@ -21,6 +21,8 @@ pub struct Futures {
     present: Vec<Position>,
     /// `[N]`: the scale at the moment itself, metres.
     deviations: Vec<f64>,
+    /// `[N]`: whether the motion is known, by which somebody may be seen to keep away.
+    are_known: Vec<bool>,
     groups: Vec<Vec<usize>>,
     parts: Vec<ScenePart>,
     /// What each pedestrian may do; `None` where these are the futures themselves.
@@ -81,7 +83,8 @@ impl Futures {
         }
         let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
         let deviations = (0..window.len()).map(|i| window.quality(i).deviation).collect();
-        Ok(Self { present, deviations, groups: groups(window), parts, hypotheses, forecast, plan })
+        let are_known = (0..window.len()).map(|i| !window.quality(i).is_hardly_observed()).collect();
+        Ok(Self { present, deviations, are_known, groups: groups(window), parts, hypotheses, forecast, plan })
     }
 
     /// [Groups](crate::groups) of pedestrians who walk together, as indices.
@@ -113,12 +116,18 @@ impl Futures {
         Self {
             present: pedestrians.iter().map(|&i| self.present[i]).collect(),
             deviations: pedestrians.iter().map(|&i| self.deviations[i]).collect(),
+            are_known: pedestrians.iter().map(|&i| self.are_known[i]).collect(),
             groups: groups.filter(|group| group.len() > 1).collect(),
             parts: self.parts.iter().filter_map(|part| part.renumbered(|i| place(&i))).collect(),
             hypotheses: self.hypotheses.as_ref().map(|hypotheses| hypotheses.of_pedestrians(pedestrians)),
             forecast: self.forecast.of_pedestrians(pedestrians),
             plan: self.plan.clone(),
         }
+    }
+
+    /// Whether the motion of pedestrian `i` is known. Of others nobody knows whether they keep away from anything.
+    pub(crate) fn is_known(&self, i: usize) -> bool {
+        self.are_known[i]
     }
 
     /// The plan that the pedestrians respond to; `None` if they were given none.

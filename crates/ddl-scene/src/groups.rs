@@ -20,7 +20,7 @@ pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
 /// Groups of at least two pedestrians of a window who walk together, as indices in ascending order: linked by pairs
 /// whose mean distance over the observation is below 2.2 m and whose mean velocities differ by less than 0.35 m/s.
 ///
-/// Two who stand beside each other count as a group, too.
+/// Two who stand beside each other count as a group, too; nobody who is hardly observed does.
 #[must_use]
 pub fn groups(window: &Window) -> Vec<Vec<usize>> {
     let present = window.positions_at(OBSERVED - 1);
@@ -28,6 +28,9 @@ pub fn groups(window: &Window) -> Vec<Vec<usize>> {
     let mut links: Vec<usize> = (0..window.len()).collect();
     for (i, &place) in present.iter().enumerate() {
         for j in index.nearest_others(i, place, MOST_NEIGHBOURS) {
+            if [i, j].iter().any(|&one| window.quality(one).is_hardly_observed()) {
+                continue;
+            }
             let [apart, velocities] = closeness(window.observed(i), window.observed(j));
             if apart < CLOSE && velocities < ALIKE {
                 link(&mut links, i, j);

@@ -112,7 +112,8 @@ impl<'a> JointScene<'a> {
         let mut order: Vec<usize> = (0..window.len()).collect();
         order.sort_by(|&i, &j| all[i].compare(&all[j]).then_with(|| name(window, i).cmp(&name(window, j))));
         let mut people: Vec<Hypotheses> = order.iter().map(|&i| all[i].clone()).collect();
-        let mut tracks: Vec<Option<&[Position]>> = order.iter().map(|&i| Some(window.observed(i))).collect();
+        let track = |&i: &usize| (!window.quality(i).is_hardly_observed()).then(|| window.observed(i));
+        let mut tracks: Vec<Option<&[Position]>> = order.iter().map(track).collect();
         if let Some(plan) = plan {
             let path = std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position);
             let radius = plan.largest_radius();

@@ -69,7 +69,8 @@ impl Futures {
     /// The odds that somebody comes close are divided by a factor learned from recordings in which a pedestrian plays
     /// the robot: a large one, and a small one for those who walk with the `ego`. The factor depends on the distance
     /// between centres, which is `within` plus the largest radius of the plan; from 1.5 m on it is 1. Pedestrians who
-    /// are close at the moment itself, or may be, keep the probability of that.
+    /// are close at the moment itself, or may be, keep the probability of that, and those seen for the first time
+    /// theirs.
     ///
     /// # Errors
     /// As [`risks`](Self::risks); the pedestrians were given a plan, which they respond to already.
@@ -80,7 +81,8 @@ impl Futures {
         let group = ego.and_then(|ego| self.groups().iter().find(|group| group.contains(&ego)));
         let odds = |plan: &Plan| {
             let [strangers, companions] = Energy::learned().avoidance(within + plan.largest_radius());
-            let mut odds = vec![1.0 / strangers; self.pedestrians()];
+            let odds_of = |i: usize| if self.is_known(i) { 1.0 / strangers } else { 1.0 };
+            let mut odds: Vec<f64> = (0..self.pedestrians()).map(odds_of).collect();
             for &companion in group.into_iter().flatten() {
                 odds[companion] = 1.0 / companions;
             }

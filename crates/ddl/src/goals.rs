@@ -1,6 +1,7 @@
 //! The goals of a model.
 
 pub(crate) mod experts;
+pub(crate) mod first_seen;
 pub(crate) mod model;
 pub(crate) mod packed;
 pub(crate) mod reach;

@@ -27,16 +27,15 @@ pub enum Note {
     OwnClocks,
     /// Speeds that suggest wrong units or a wrong rate, which give meaningless forecasts.
     Implausible(PlausibilityWarning),
-    /// Forecasts of pedestrians who were tracked for less than 8 steps, or carried on from an earlier row.
-    Estimated { forecasts: usize, late: usize, carried: usize },
+    /// Forecasts of pedestrians who were tracked for less than 8 steps, of some of them so short that their velocity is
+    /// hardly known, or who were carried on from an earlier row.
+    Estimated { forecasts: usize, late: usize, hardly: usize, carried: usize },
     /// Noise on each axis, metres, that observed paths are smoothed for.
     Noise { metres: f64 },
     /// Rows that do not fit their tracks, at least one.
     Misfits { scene: Option<SceneName>, misfits: Vec<MisfitNote> },
     /// Pedestrians who are in no window.
     NeverForecast { count: usize, of: usize, first: PedestrianName },
-    /// Pedestrians at the last moment who are in no window.
-    MissingAtEnd { count: usize, of: usize, when: String },
     /// A file that goes on after its last window.
     EndsEarly { end: String, last: String },
     /// Motions unlike the training motions.
@@ -170,10 +169,11 @@ impl Display for Note {
             }
             Self::OwnClocks => to.write_str("each pedestrian has a clock of its own: moments are about 0.4 s apart"),
             Self::Implausible(warning) => implausible(warning, to),
-            Self::Estimated { forecasts, late, carried } => write!(
+            Self::Estimated { forecasts, late, hardly, carried } => write!(
                 to,
-                "of {forecasts} forecasts {late} are of pedestrians tracked for less than {OBSERVED} steps, and \
-                 {carried} of pedestrians last seen a little before (columns unseen and age); {} and {} leave them out",
+                "of {forecasts} forecasts {late} are of pedestrians tracked for less than {OBSERVED} steps ({hardly} of \
+                 them just seen, so that nobody knows where they go), and {carried} of pedestrians last seen a little \
+                 before (columns unseen and age); {} and {} leave them out",
                 Setting::Whole,
                 Setting::MaxAge
             ),
@@ -184,13 +184,8 @@ impl Display for Note {
             Self::Misfits { scene, misfits } => misfit(scene.as_ref(), misfits, to),
             Self::NeverForecast { count, of, first } => write!(
                 to,
-                "{count} of {of} pedestrians are never forecast, first {first}: a forecast needs two rows that fit, at \
-                 most 2 s apart"
-            ),
-            Self::MissingAtEnd { count, of, when } => write!(
-                to,
-                "{count} of the {of} pedestrians at {when} are not forecast: it is their first row, or their position \
-                 is doubtful"
+                "{count} of {of} pedestrians are never forecast, first {first}: they have no row near a moment that is \
+                 forecast"
             ),
             Self::EndsEarly { end, last } => {
                 write!(to, "there is no forecast for the last frame of the file ({end}); the last one is at {last}")

@@ -36,7 +36,7 @@ int main() try {
         std::vector<ddl::Observation> seen;
         for (int i = 0; i < 8; ++i) seen.push_back(person(i, now));
         live.observe(now, seen, forecast, ddl::joint());
-        if (forecast.pedestrians() == 0) continue;  // two rows of somebody are enough
+        if (forecast.pedestrians() == 0) continue;  // nobody is there
 
         std::vector<ddl::Plan> plans;
         for (int p = 0; p < 5; ++p) plans.push_back(straight(robot, speeds[p], slants[p]));

@@ -52,6 +52,9 @@ pub(crate) struct Evaluate {
     /// all]
     #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
     test_pedestrians: Option<usize>,
+    /// Observe everybody only for the last rows, 1 to 8, at steps of 0.4 s [default: for all 8 steps]
+    #[arg(long, value_name = "ROWS", value_parser = clap::value_parser!(u8).range(1..=8), conflicts_with = "forecasts")]
+    observed_rows: Option<u8>,
     /// Write the futures of the protocol joint into a new folder, as the sample files of Joint Metrics Matter
     /// (docs/your-model.md)
     #[arg(long, value_name = "FOLDER", conflicts_with = "forecasts", value_hint = clap::ValueHint::AnyPath)]
@@ -108,6 +111,7 @@ impl Evaluate {
         }
         request.validation_recordings.clone_from(&self.validation_recordings);
         request.test_pedestrians = self.test_pedestrians;
+        request.observed_rows = self.observed_rows.map(usize::from);
         request.commit.clone_from(&self.reporting.commit);
         let trained_on = model.config().data.convention;
         let windows = &self.other.windows;

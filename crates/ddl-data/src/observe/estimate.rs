@@ -8,8 +8,6 @@ use crate::observe::track::{ObservedTrack, TimedPosition};
 
 /// Largest distance of a row from a step that it is taken for, in steps: 2 ms.
 pub(crate) const ON_STEP: f64 = 0.005;
-/// Fewest rows that show where a pedestrian is going.
-const FEWEST: usize = 2;
 /// Least noise in an estimate between rows (m): people sway.
 const SWAY: f64 = 0.01;
 
@@ -23,8 +21,9 @@ pub(crate) struct ObservedPositions {
 
 impl ObservedTrack {
     /// The observation at a time, not before the last row; both in ticks of `tick_time` seconds, of which `step` make
-    /// 0.4 s. Rows at the steps pass unchanged unless the tracker is noisy. `None` with fewer
-    /// than two rows, and for a track that is too short for its speed.
+    /// 0.4 s. Rows at the steps pass unchanged unless the tracker is noisy. A single row is a pedestrian at one place,
+    /// whose velocity is not known; so is the last row of a track that is too short for its speed. `None` if positions
+    /// overflow.
     pub(crate) fn observed(
         &self,
         time: f64,
@@ -32,8 +31,8 @@ impl ObservedTrack {
         tick_time: f64,
         recording: &RecordingNoise,
     ) -> Option<ObservedPositions> {
-        if self.rows.len() < FEWEST || self.is_too_fast(recording, tick_time) {
-            return None;
+        if self.is_too_fast(recording, tick_time) {
+            return self.begun_at_last_row().observed(time, step, tick_time, recording);
         }
         let level = self.level(recording);
         let tolerance = ON_STEP * step;
@@ -50,7 +49,10 @@ impl ObservedTrack {
             let excess = |variance: f64, clean: f64| (variance - clean).max(0.0).sqrt();
             let last = &motions[OBSERVED - 1];
             quality = ObservationQuality {
-                unseen: steps.iter().filter(|&&at| at < self.rows[0].time - tolerance).count(),
+                unseen: match self.rows.len() {
+                    1 => OBSERVED - 1,
+                    _ => steps.iter().filter(|&&at| at < self.rows[0].time - tolerance).count(),
+                },
                 age: (time - self.last_time()) * tick_time,
                 deviation: excess(last.variance, clean.variance),
                 velocity_deviation: excess(last.velocity_variance, clean.velocity_variance),

@@ -105,6 +105,12 @@ impl ObservedTrack {
         }
     }
 
+    /// A track that begins with the last row of this one.
+    pub(super) fn begun_at_last_row(&self) -> Self {
+        let row = self.rows[self.rows.len() - 1];
+        Self::beginning(row.time, row.position)
+    }
+
     /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. Whether it fits is decided with the
     /// noise `known` before, so that it does not depend on the order of pedestrians; what it shows is added to
     /// `recording`. Returns the time of a row that is not where the pedestrian was expected (this one or the one

@@ -224,6 +224,50 @@ proptest! {
         }
     }
 
+    /// Whoever has a row at a moment is observed at it, wherever the row is. Of a first row nothing is known but the
+    /// place; later rows, and all of others, show more.
+    #[test]
+    fn whoever_is_seen_is_observed(
+        (pace, mut rows) in films(),
+        jumps in prop::collection::vec((any::<prop::sample::Index>(), prop::array::uniform2(-9.0..9.0)), 0..9),
+    ) {
+        for (index, jump) in jumps {
+            let place = &mut index.get_mut(&mut rows).position;
+            *place = [0, 1].map(|axis| place[axis] + jump[axis]);
+        }
+        let recording = recording(pace.clock(), rows);
+        let tracks = recording.live_tracks().with_completeness(Completeness::Partial).with_interval(0.0);
+        let mut seen = Vec::new();
+        for window in recording.observe(tracks).windows {
+            let rows = recording.at(window.frames()[OBSERVED - 1]);
+            for row in rows {
+                let i = window.pedestrians().iter().position(|id| *id == row.pedestrian).unwrap();
+                let quality = window.quality(i);
+                if !seen.contains(&row.pedestrian) {
+                    seen.push(row.pedestrian);
+                    prop_assert_eq!(window.observed(i), [row.position; OBSERVED]);
+                    prop_assert!(quality.is_hardly_observed() && quality.unseen == 7 && quality.velocity_deviation > 1.0);
+                }
+                prop_assert!(quality.unseen == 7 || !quality.is_hardly_observed());
+            }
+        }
+        prop_assert_eq!(seen.len(), recording.pedestrians().len());
+    }
+
+    /// A window of which fewer rows were seen: the last row and the future are as before, and with all 8 of them all is.
+    #[test]
+    fn fewer_rows_leave_the_last_one(rows in 1..=8_usize, seed in any::<u64>()) {
+        let recording = recording(RowTimes::Rate(2.5).clock(), film(RowTimes::Rate(2.5), seed, 0.0, 0.0));
+        for window in recording.windows(WindowRule::Complete) {
+            let cut = LiveTracks::last_rows(&window, rows);
+            prop_assert_eq!((cut.pedestrians(), cut.frames()), (window.pedestrians(), window.frames()));
+            for i in 0..window.len() {
+                prop_assert_eq!(&cut.track(i)[OBSERVED - rows..], &window.track(i)[OBSERVED - rows..]);
+                prop_assert_eq!(cut.quality(i).unseen, OBSERVED - rows);
+            }
+        }
+    }
+
     /// Rows at the steps, with or without others between them, pass to the bit, and nothing was estimated.
     #[test]
     fn rows_at_the_steps_pass_unchanged(frames in prop::sample::select(vec![1, 2, 4, 5, 10]), seed in any::<u64>()) {
@@ -309,10 +353,10 @@ fn every_clock_is_observed() {
         0.8,
         9.6,
     );
-    // A common clock that jitters: each at every moment from its second row on.
+    // A common clock that jitters: each at every moment from its first row on.
     let jitter = |_| (0..100).map(|k| 1_000 + RowTimes::Jitter.frame(0, k)).collect();
     let recording = recording(Clock::with_frame_time(0.001).unwrap(), straight(jitter, 4));
-    assert_eq!(partial(&recording).windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
+    assert_eq!(partial(&recording).windows.iter().map(Window::len).sum::<usize>(), 4 * 100);
     let slow = recording.observe(recording.live_tracks().with_interval(0.4)).windows;
     assert!((16..=18).contains(&slow.len()), "{} windows every 0.4 s of the last 7.1 s", slow.len());
 }

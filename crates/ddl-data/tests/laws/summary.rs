@@ -68,7 +68,7 @@ fn holes_and_training_samples_are_counted() {
     // 20 steps from each of the frames 0 to 80, but no moment at frame 50.
     assert_eq!(summary.to_learn_from, 80);
     let summary = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap().summary();
-    assert_eq!((summary.to_forecast, summary.seen_whole), (11, 5));
+    assert_eq!((summary.to_forecast, summary.seen_whole), (12, 5));
     assert_eq!(summary.warnings(), [PlausibilityWarning::NothingToLearnFrom]);
     // Two and four rows of a hundred.
     let without = |missing: usize| warnings([&walk(0.5)[..50], &walk(0.5)[50 + missing..]].concat()).len();

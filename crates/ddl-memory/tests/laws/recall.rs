@@ -95,6 +95,23 @@ proptest! {
         }
     }
 
+    /// Somebody seen for the first time may move like anybody nearby.
+    #[test]
+    fn a_place_recalls_all_motions(frames in crate::crowds(), x in -3.0..9.0, y in -3.0..9.0, count in 0..20_usize) {
+        let memory = memory_of(&frames, SceneMemory::DEFAULT_CAPACITY);
+        let squared = |segment: &Segment| ddl_core::distance(segment[OBSERVED - 1], [x, y]).powi(2);
+        let nearest = segments(&frames).into_iter().filter_map(|(.., segments)| {
+            segments.iter().map(squared).min_by(f64::total_cmp).filter(|squared| *squared < 60.0)
+        });
+        let mut nearest: Vec<f64> = nearest.collect();
+        nearest.sort_by(f64::total_cmp);
+        let recalled = memory.recall_at([x, y], None, count);
+        prop_assert_eq!(recalled.len(), nearest.len().min(count));
+        for (example, expected) in recalled.iter().zip(nearest) {
+            prop_assert!(is_near(example.distance, expected) && is_near(squared(&example.track), expected));
+        }
+    }
+
     #[test]
     fn the_order_of_pedestrians_does_not_matter(frames in crate::crowds(), seed in any::<u64>()) {
         let memory = memory_of(&frames, 100);

@@ -242,7 +242,7 @@ class Forecaster:
         recording = Recording(frame, id, x, y, time=time, fps=fps)
         made = self.forecast_recording(recording, last=last, samples=samples, whole=whole, max_age=max_age, every=every)
         if not made:
-            missing = "no pedestrian has two rows at most 2 s apart"
+            missing = "no pedestrian was tracked for all 8 steps"
             raise ValueError(f"{missing}; set fps to the frame numbers per second")
         return table(made)
 

@@ -44,6 +44,9 @@ pub struct EvaluationRequest {
     pub validation_recordings: Vec<String>,
     /// Evaluate a seeded part of the windows with at least this many test pedestrians; `None`: all.
     pub test_pedestrians: Option<usize>,
+    /// Observe the pedestrians only for the last so many rows, 1 to 8, at steps of 0.4 s; `None`: all that there are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub observed_rows: Option<usize>,
     /// Commit of the program, for the record.
     pub commit: String,
 }
@@ -57,6 +60,7 @@ impl EvaluationRequest {
             on: Split::Test,
             validation_recordings: Vec::new(),
             test_pedestrians: None,
+            observed_rows: None,
             commit: "unknown".to_owned(),
         }
     }
@@ -100,7 +104,8 @@ pub fn evaluate(
         request.on,
         &request.validation_recordings,
         request.test_pedestrians,
-    )?;
+    )?
+    .observed_for(request.observed_rows);
     let asked = |some: &[Protocol]| some.iter().any(|p| request.protocols.contains(p));
     let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
     let mut total = test.pedestrians() * passes.iter().filter(|asked| **asked).count();

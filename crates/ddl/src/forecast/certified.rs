@@ -98,9 +98,9 @@ impl Walked<'_> {
             .flat_map_iter(|(i, (goals, weights))| {
                 let spread = calibration.spread(paces[i], self.window.observed(i), goals, weights, time_step);
                 let quality = self.window.quality(i);
-                (1..)
-                    .zip(spread)
-                    .map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
+                // The goals of the hardly observed differ as their velocities may.
+                let seconds = if quality.is_hardly_observed() { 0.0 } else { time_step };
+                (1..).zip(spread).map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * seconds)))
             })
             .collect();
         Some(Spread { scales, paces, regions: Calibration::shared_regions() })

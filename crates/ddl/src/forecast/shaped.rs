@@ -2,8 +2,9 @@
 
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
+use crate::goals::first_seen::KnownMotions;
 use crate::trust::calibration::Calibration;
-use ddl_core::{Forecast, ForecastError, Position, Window};
+use ddl_core::{Forecast, ForecastError, HORIZON, OBSERVED, Position, Window, between};
 use ddl_goal::GoalSet;
 use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
 
@@ -44,14 +45,18 @@ pub(crate) fn walked<'a>(
     let GuidedGoals { sets, familiarity } = goals;
     let goals: Vec<Vec<Vec<Position>>> =
         sets.iter().map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect()).collect();
+    let known = KnownMotions::of(windows);
     let share = |&familiarity: &f64| Calibration::fitted().share(familiarity);
     let shares: Vec<Vec<f64>> = familiarity.iter().map(|window| window.iter().map(share).collect()).collect();
+    let (known_goals, shares) = (known.only(&goals), known.only(&shares));
     let rollouts = network
-        .forecast_windows(windows, &goals, Noise::Expected, rule, Some(&shares))
+        .forecast_windows(known.windows(), &known_goals, Noise::Expected, rule, Some(&shares))
         .map_err(|error| ForecastError::model(NAME, error))?;
+    let rollouts = with_first_seen(&known, rollouts, windows, &goals, network.config().variant.dynamics());
     let shaped = rollouts.into_iter().zip(windows).zip(sets);
+    let shares = known.with_others(shares.into_iter().flatten(), |_, _| 0.0);
     let trusted = shares.into_iter().zip(familiarity);
-    Ok(shaped.zip(trusted).map(move |(((rollout, window), sets), (shares, familiarity))| Walked {
+    Ok(shaped.zip(trusted).map(move |((((rolled_out, factors), window), sets), (shares, familiarity))| Walked {
         shares,
         familiarity: Some(familiarity),
         spread: None,
@@ -59,12 +64,44 @@ pub(crate) fn walked<'a>(
         config: network.config(),
         rule,
         window,
-        hypotheses: rollout.hypotheses,
-        rolled_out: rollout.positions,
-        factors: rollout.factors,
+        hypotheses: sets[0].goals().len(),
+        rolled_out,
+        factors,
         weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
         goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
     }))
+}
+
+/// The path of every hypothesis of a window, `[N][K][12]`, and its factors.
+type Shaped = (Vec<Position>, Option<Vec<[f64; 3]>>);
+
+/// The rollouts of windows, with straight paths of the pedestrians seen for the first time: no network shapes them.
+fn with_first_seen(
+    known: &KnownMotions<'_>,
+    rollouts: Vec<WindowRollout>,
+    windows: &[Window],
+    goals: &[Vec<Vec<Position>>],
+    has_flow: bool,
+) -> Vec<Shaped> {
+    if known.are_all() {
+        return rollouts.into_iter().map(|rollout| (rollout.positions, rollout.factors)).collect();
+    }
+    let of_each = rollouts.iter().flat_map(|rollout| {
+        let size = rollout.hypotheses * HORIZON;
+        let factors = rollout.factors.as_deref().unwrap_or_default();
+        let of = move |i: usize| (&rollout.positions[i * size..][..size], factors.chunks(size).nth(i));
+        (0..rollout.pedestrians).map(of).map(|(path, factors)| (path.to_vec(), factors.unwrap_or_default().to_vec()))
+    });
+    let straight = |window: usize, i: usize| {
+        let (last, goals) = (windows[window].observed(i)[OBSERVED - 1], &goals[window][i]);
+        let to = |&goal: &Position| (1..=HORIZON).map(move |t| between(last, goal, t as f64 / HORIZON as f64));
+        (goals.iter().flat_map(to).collect(), vec![[1.0, 0.0, 1.0]; goals.len() * HORIZON])
+    };
+    let merged = known.with_others(of_each, straight).into_iter().map(|each| {
+        let (paths, factors): (Vec<Vec<Position>>, Vec<Vec<[f64; 3]>>) = each.into_iter().unzip();
+        (paths.concat(), has_flow.then(|| factors.concat()))
+    });
+    merged.collect()
 }
 
 /// Plain STAR: equally likely noise samples.

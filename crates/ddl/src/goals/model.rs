@@ -3,6 +3,7 @@
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::goals::experts;
+use crate::goals::first_seen::{self, KnownMotions};
 use crate::goals::packed::{self, Unpacked};
 use crate::goals::reach;
 use crate::goals::sets;
@@ -191,20 +192,26 @@ impl GoalModel {
     /// # Errors
     /// When positions are so far apart that distances leave the range of `f64`, or libtorch fails.
     pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
-        let sets = match &self.origin {
-            GoalOrigin::Retrieved(estimator) => sets::retrieved(estimator, windows)?,
-            GoalOrigin::Proposed(network) => self.representatives(&**network, None, windows)?,
+        self.within_reach(windows, |windows| match &self.origin {
+            GoalOrigin::Retrieved(estimator) => sets::retrieved(estimator, windows),
+            GoalOrigin::Proposed(network) => self.representatives(&**network, None, windows),
             GoalOrigin::Pooled { network, estimator, retrieved_share } => {
-                self.representatives(&**network, Some((estimator, *retrieved_share)), windows)?
+                self.representatives(&**network, Some((estimator, *retrieved_share)), windows)
             }
-        };
-        Ok(self.within_reach(windows, sets))
+        })
     }
 
     /// Moves goals beyond the pedestrian's reach to its limit, and gives them the weights of its pace and familiarity.
-    fn within_reach(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
+    /// Goals of pedestrians seen for the first time are not `estimated`.
+    fn within_reach(
+        &self,
+        windows: &[Window],
+        estimated: impl FnOnce(&[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError>,
+    ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
+        let known = KnownMotions::of(windows);
+        let sets = estimated(known.windows())?;
         let time_step = self.config.star.time_step;
-        let of_window = |(window, sets): (&Window, Vec<GoalSet>)| {
+        let of_window = |(window, sets): (&Window, Vec<GoalSet>)| -> Vec<GoalSet> {
             let sets = reach::within(window, sets, time_step).into_par_iter();
             let familiarity = self.familiarity(window);
             let tempered = |((i, set), familiarity)| {
@@ -213,11 +220,14 @@ impl GoalModel {
             };
             sets.enumerate().zip(familiarity).map(tempered).collect()
         };
-        windows.iter().zip(sets).map(of_window).collect()
+        let sets = known.windows().iter().zip(sets).flat_map(of_window).map(Ok);
+        let sets = known.with_others(sets, |window, i| first_seen::goals(&windows[window], i, self.clusters()));
+        sets.into_iter().map(|sets| sets.into_iter().collect()).collect()
     }
 
     /// Familiarity of the observed motion of each pedestrian of a window: the share of held-out training motions that
-    /// are at least as unusual, in (0, 1]. It is 1 where no training motions are known.
+    /// are at least as unusual, in (0, 1]. It is 1 where no training motions are known, and of pedestrians seen for the
+    /// first time.
     #[must_use]
     pub fn familiarity(&self, window: &Window) -> Vec<f64> {
         TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
@@ -246,7 +256,7 @@ impl GoalModel {
     pub(crate) fn goals_without_library(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         match self.proposal_network() {
             None => self.goals(windows),
-            Some(network) => Ok(self.within_reach(windows, self.representatives(network, None, windows)?)),
+            Some(network) => self.within_reach(windows, |windows| self.representatives(network, None, windows)),
         }
     }
 
@@ -341,7 +351,7 @@ impl GoalModel {
     }
 }
 
-fn failed(error: impl std::error::Error + Send + Sync + 'static) -> ForecastError {
+pub(crate) fn failed(error: impl std::error::Error + Send + Sync + 'static) -> ForecastError {
     ForecastError::model("goals", error)
 }
 

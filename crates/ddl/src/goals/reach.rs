@@ -1,6 +1,6 @@
 //! Goals within the reach of a pedestrian.
 
-use ddl_core::{HORIZON, OBSERVED, Window};
+use ddl_core::{HORIZON, OBSERVED, Position, Window};
 use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;
 use rayon::prelude::*;
@@ -15,8 +15,13 @@ pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec
     let reachable = |(i, set): (usize, GoalSet)| {
         let observed = window.observed(i);
         let set = set.widened_by(WIDENING * window.quality(i).uncertainty());
-        let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
-        set.clamped_to(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)
+        clamped(set, observed, time_step)
     };
     sets.into_par_iter().enumerate().map(reachable).collect()
+}
+
+/// The goals of a pedestrian with these observed positions, moved within its reach.
+pub(crate) fn clamped(set: GoalSet, observed: &[Position], time_step: f64) -> GoalSet {
+    let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
+    set.clamped_to(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)
 }

@@ -3,7 +3,7 @@
 use crate::note::{MisfitNote, Note};
 use crate::tracks::timed::many_frames;
 use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, Setting, TIME_STEP, Window};
-use ddl_data::{Clock, Completeness, FrameNumber, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording};
+use ddl_data::{Clock, Completeness, FrameNumber, LiveTracks, Misfit, PlausibilityWarning, Recording};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
@@ -64,25 +64,26 @@ impl ObservedTracks {
         }
     }
 
-    /// Why there is no window; `None` if there is one.
+    /// Why there is no window; `None` if there is one, as always where single rows are enough.
     pub fn problem(&self) -> Option<NobodyObserved> {
         let step = || (!self.clock.counts_times()).then(|| steps_in_words(self.clock));
-        self.windows.is_empty().then(|| NobodyObserved { completeness: self.completeness, step: step() })
+        self.windows.is_empty().then(|| NobodyObserved { step: step() })
     }
 
-    /// What was estimated and left out, because a forecast from two positions looks like any other.
+    /// What was estimated and left out, because a forecast from one position looks like any other.
     pub fn estimated(&self) -> Vec<Note> {
         let mut notes = Vec::new();
         let windows = self.windows.iter();
         let qualities: Vec<ObservationQuality> =
             windows.flat_map(|window| (0..window.len()).map(|i| window.quality(i))).collect();
         let late = qualities.iter().filter(|quality| !quality.is_whole()).count();
+        let hardly = qualities.iter().filter(|quality| quality.is_hardly_observed()).count();
         let carried = qualities.iter().filter(|quality| quality.age > 0.0).count();
         if late + carried > 0 {
-            notes.push(Note::Estimated { forecasts: qualities.len(), late, carried });
+            notes.push(Note::Estimated { forecasts: qualities.len(), late, hardly, carried });
         }
         notes.extend(noise(self.noise));
-        let rest = [self.misfits(), self.never_forecast(), self.missing(), self.ends_early()];
+        let rest = [self.misfits(), self.never_forecast(), self.ends_early()];
         notes.extend(rest.into_iter().flatten());
         notes
     }
@@ -109,21 +110,11 @@ impl ObservedTracks {
         let [end, last] = [end, last].map(|tick| self.clock.words(tick));
         (gap > LiveTracks::LONGEST_GAP).then_some(Note::EndsEarly { end, last })
     }
-
-    fn missing(&self) -> Option<Note> {
-        let window = self.windows.last().filter(|_| self.completeness != Completeness::Whole)?;
-        let last = window.frames()[OBSERVED - 1];
-        let rows = self.recording.at(last);
-        let is_missing = |row: &&Observation| !window.pedestrians().contains(&row.pedestrian);
-        let count = rows.iter().filter(is_missing).count();
-        (count > 0).then(|| Note::MissingAtEnd { count, of: rows.len(), when: self.clock.words(last) })
-    }
 }
 
 /// No pedestrian can be forecast.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NobodyObserved {
-    completeness: Completeness,
     /// A step of 0.4 s, of frame numbers.
     step: Option<String>,
 }
@@ -132,11 +123,7 @@ impl std::error::Error for NobodyObserved {}
 
 impl std::fmt::Display for NobodyObserved {
     fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let too_few = match self.completeness {
-            Completeness::Whole => "was tracked for all 8 steps",
-            Completeness::Partial => "has two rows that fit, at most 2 s apart",
-        };
-        write!(to, "no pedestrian {too_few}")?;
+        write!(to, "no pedestrian was tracked for all {OBSERVED} steps")?;
         match &self.step {
             Some(step) => {
                 let [fps, frames] = [Setting::Fps, Setting::FrameStep];

@@ -79,9 +79,12 @@ impl TrainingMotions {
         motions.is_valid().then_some(motions)
     }
 
-    /// The familiarity of each pedestrian of a window; 1 if the training motions are unknown.
+    /// The familiarity of each pedestrian of a window; 1 if its motion or the training motions are unknown.
     pub(crate) fn of_window(motions: Option<&Self>, window: &Window, time_step: f64) -> Vec<f64> {
-        let familiarity = |i: usize| motions.map_or(1.0, |m| m.familiarity(window.observed(i), time_step));
+        let familiarity = |i: usize| {
+            let known = motions.filter(|_| !window.quality(i).is_hardly_observed());
+            known.map_or(1.0, |motions| motions.familiarity(window.observed(i), time_step))
+        };
         (0..window.len()).map(familiarity).collect()
     }
 

@@ -9,8 +9,8 @@ use crate::run::folds::fold_by_name;
 use crate::run::model_source::ModelSource;
 use crate::run::training_data::digest;
 use crate::run::validation_part::ValidationPart;
-use ddl_core::{PedestrianId, Setting, Window};
-use ddl_data::{Convention, Dataset, Fold, Recording, WindowRule};
+use ddl_core::{OBSERVED, PedestrianId, Setting, Window};
+use ddl_data::{Convention, Dataset, Fold, LiveTracks, Recording, WindowRule};
 use ddl_network::DeviceChoice;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -231,6 +231,16 @@ impl TestSet {
         let subset = format!("where a fold has more than {pedestrians} pedestrians, a seeded part of its windows");
         let part = if self.pedestrians() > pedestrians { self.part(pedestrians) } else { self };
         Self { subset: Some(subset), ..part }
+    }
+
+    /// The same windows, observed only for the last rows.
+    pub(crate) fn observed_for(self, rows: Option<usize>) -> Self {
+        let Some(rows) = rows else {
+            return self;
+        };
+        let seen = format!("observed for {rows} of {OBSERVED} rows");
+        let windows = self.windows.iter().map(|window| LiveTracks::last_rows(window, rows)).collect();
+        Self { windows, subset: Some(self.subset.map_or(seen.clone(), |subset| format!("{subset}; {seen}"))), ..self }
     }
 
     pub(crate) fn pedestrians(&self) -> usize {

@@ -21,7 +21,7 @@ pub(super) struct LeftOut {
     /// Whether the warning about units has been given.
     is_unit_doubted: bool,
     is_few_told: bool,
-    /// Rows, and forecasts of pedestrians.
+    /// Rows, and forecasts of pedestrians whose velocity is known.
     rows: usize,
     forecast: usize,
     frames: usize,
@@ -100,18 +100,18 @@ impl LeftOut {
         }
     }
 
-    /// Counts forecasts of pedestrians.
+    /// Counts forecasts of pedestrians whose velocity is known.
     pub(super) fn forecast(&mut self, pedestrians: usize) {
         self.forecast += pedestrians;
     }
 
-    /// Says once why most pedestrians are not forecast, if so after these numbers of rows and frames.
+    /// Says once why most motions are not known, if so after these numbers of rows and frames.
     pub(super) fn tell_if_few(&mut self, rows: usize, frames: usize) {
         let are_few = self.rows >= rows && self.frames >= frames && 2 * self.forecast < self.rows;
         if are_few && !std::mem::replace(&mut self.is_few_told, true) {
             tell(format_args!(
-                "warning: only {} of {} positions were forecast from: a pedestrian needs two rows, at most 2 s apart, \
-                 under one name; is the rate right, and does the tracker keep its names?",
+                "warning: only {} of {} positions were forecast from with a known velocity: a pedestrian needs some \
+                 rows, at most 2 s apart, under one name; is the rate right, and does the tracker keep its names?",
                 self.forecast, self.rows
             ));
         }

@@ -18,7 +18,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 const MOST_WAITING: usize = 64;
 /// Number of rows after which a stream is told that few are forecast.
 const MANY_ROWS: usize = 500;
-/// Number of frames before that message: a forecast needs two rows of a pedestrian, and the first frame has one.
+/// Number of frames before that message: the first frame has one row of each pedestrian.
 const SEVERAL_FRAMES: usize = 10;
 /// Largest number of frames read between two batches, if only the latest frame of each scene is forecast.
 const MOST_TAKEN: usize = 4096;
@@ -364,7 +364,9 @@ impl Stream<'_> {
 
     fn write(&mut self, text: &str, windows: &[Window]) -> anyhow::Result<()> {
         let frames = windows.len();
-        self.left_out.forecast(windows.iter().map(Window::len).sum());
+        let is_known = |window: &Window, i: usize| !window.quality(i).is_hardly_observed();
+        let known = windows.iter().map(|window| (0..window.len()).filter(|&i| is_known(window, i)).count());
+        self.left_out.forecast(known.sum());
         self.answered += frames as u64;
         self.output.write(text).with_context(|| match &self.forecast.output {
             Some(path) => format!(

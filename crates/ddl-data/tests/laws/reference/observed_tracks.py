@@ -183,8 +183,8 @@ class Track:
     def observed(self, time, step, tick, recording):
         level = self.noise.level(recording)
         is_short = (self.last() - self.rows[0][0]) * tick < 0.35
-        if len(self.rows) < 2 or is_short and self.noise.filters[level].speed() > 3.5:
-            return None
+        if is_short and self.noise.filters[level].speed() > 3.5:
+            return Track(*self.rows[-1]).observed(time, step, tick, recording)
         steps = [time - k * step for k in range(7, -1, -1)]
         on_steps = []
         for at in steps:
@@ -199,7 +199,7 @@ class Track:
         for _ in range(7):
             clean = clean.after(0.4).seen_at(np.zeros(2))
         excess = np.sqrt(np.maximum(np.diag(covs[-1] - clean.cov), 0))
-        unseen = sum(at < self.rows[0][0] - 0.005 * step for at in steps)
+        unseen = 7 if len(self.rows) == 1 else sum(at < self.rows[0][0] - 0.005 * step for at in steps)
         return places, (unseen, (time - self.last()) * tick, *excess)
 
 
@@ -218,9 +218,9 @@ def smoothed(rows, times, tick, noise, agility):
         cov[now, : 2 * k] = f @ cov[before, : 2 * k]
         cov[: 2 * k, now] = cov[now, : 2 * k].T
         cov[now, now] = f @ cov[before, before] @ f.T + shaking(seconds, agility)
-    seen = [2 * index[t] for t, _ in rows[1:]]
+    seen = np.array([2 * index[t] for t, _ in rows[1:]], dtype=int)
     gain = np.linalg.solve(cov[np.ix_(seen, seen)] + noise**2 * np.eye(len(seen)), cov[seen]).T
-    mean = mean + gain @ (np.array([p for _, p in rows[1:]]) - mean[seen])
+    mean = mean + gain @ (np.array([p for _, p in rows[1:]]).reshape(-1, 2) - mean[seen])
     cov = cov - gain @ cov[seen]
     means, covs = [], []
     for time in times:
@@ -303,11 +303,9 @@ def observe(film):
         for who, track in sorted(tracks.items()):
             age = time - track.last()
             oldest = max(track.interval(), step) if max_age is None else max_age
-            if age == 0 or age < oldest or last_rows[who] == time and age <= oldest:
-                seen = track.observed(time, step, tick, noise)
-                if seen:
-                    places, quality = seen
-                    window.append([who, *(np.arange(1, 9) @ np.array(places)), *quality])
+            if last_rows[who] == time or age < oldest:
+                places, quality = track.observed(time, step, tick, noise)
+                window.append([who, *(np.arange(1, 9) @ np.array(places)), *quality])
         if window:
             windows.append([time, window])
     best = int(np.argmax(noise.evidence - UNUSUAL))
