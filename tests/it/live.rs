@@ -39,8 +39,11 @@ pub(crate) struct LiveProgram {
 
 impl LiveProgram {
     pub(crate) fn start(place: &Place, options: &str) -> Self {
-        let line = format!("forecast - --model run --threads 1 --format jsonl {options}");
-        let mut command = program::command(place.path(), &line);
+        Self::of(place, &format!("forecast - --model run --threads 1 --format jsonl {options}"))
+    }
+
+    fn of(place: &Place, line: &str) -> Self {
+        let mut command = program::command(place.path(), line);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         Self { input: child.stdin.take().unwrap(), output: BufReader::new(child.stdout.take().unwrap()), child }
     }
@@ -91,6 +94,46 @@ fn every_frame_is_answered_before_the_next_one() {
     assert_eq!(ended.stderr, "");
     assert_eq!(ended.succeeds(), "");
     assert_eq!(expected.next(), None);
+}
+
+/// A planner that writes its file anew while a stream runs.
+#[test]
+fn a_plan_that_cannot_be_read_keeps_the_one_before() {
+    let place = Place::empty();
+    let [near, far] = ["t,x,y\n0,3,0\n4.8,3,0.5\n", "t,x,y\n0,30,30\n4.8,30,31\n"];
+    place.write("robot.csv", near);
+    let mut live = LiveProgram::of(&place, "risk - --fps 2.5 --plan robot.csv --format jsonl");
+    live.write("frame,pedestrian,x,y\n");
+    let mut frames = 0..;
+    let mut risk = || loop {
+        let frame = frames.next().unwrap();
+        live.write(&format!("{frame},1,{},0\n\n", 0.2 * f64::from(frame)));
+        if frame > 7 {
+            return loop {
+                let line = live.line();
+                if line["observed_until"] == frame {
+                    break line["risk"].as_f64().unwrap();
+                }
+            };
+        }
+    };
+    assert!(risk() > 0.1);
+    place.write("robot.csv", far);
+    assert!(risk() < 0.01);
+    place.remove("robot.csv");
+    assert!(risk() < 0.01);
+    // A line that has no end may lack digits.
+    for half in ["", "t,x,y\n0,3", "t,x,y\n0,3,0\n4.8,3,0", "t,x,y\n"] {
+        place.write("robot.csv", half);
+        assert!(risk() < 0.01, "{half}");
+    }
+    place.write("robot.csv", near);
+    assert!(risk() > 0.1);
+    place.write("robot.csv", "t,x,y\n7,0,0\n");
+    assert!(risk() > 0.1);
+    let ended = live.end();
+    assert_eq!(ended.stderr.matches("the plan before goes on counting").count(), 2, "{ended:?}");
+    ended.succeeds();
 }
 
 #[test]

@@ -108,7 +108,7 @@ typedef struct ddl_view {
   // Whether the forecast was made at the last frame. False between two forecasts (option `every`): it is then of an
   // earlier frame; misfits, memory and warning are always of the last frame.
   bool due;
-  // N, the number of pedestrians that are forecast; may be 0.
+  // N, the number of pedestrians that are forecast; may be 0. Who is where nobody can be is not: see the misfits.
   size_t pedestrians;
   // K.
   size_t hypotheses;
@@ -138,7 +138,7 @@ typedef struct ddl_view {
   size_t misfit_count;
   // Segments in the memory of the place; 0 without one.
   size_t remembered;
-  // What is wrong with the memory of the place, though there is a forecast; null if nothing.
+  // What is wrong with the memory of the place, or doubtful of the plan, though there is a forecast; null if nothing.
   const char *warning;
 } ddl_view;
 
@@ -156,6 +156,8 @@ typedef struct ddl_risks {
   const double *steps;
   // `[P][12]`: that somebody was close by the end of this step.
   const double *until;
+  // What is doubtful of the plans, which are counted from 0: their unit, times or place. Null if nothing is.
+  const char *warning;
 } ddl_risks;
 
 // The cells and times of an occupancy.
@@ -184,6 +186,8 @@ typedef struct ddl_occupancy {
   struct ddl_point origin;
   // Side of a cell, metres.
   double cell;
+  // Number of pedestrians who are too far from the others for the area; 0 where corners are given.
+  size_t outside;
   // `[times]`: seconds after the moment.
   const double *time;
   // `[times][height][width]`, the row of the lowest y first.
@@ -220,7 +224,8 @@ struct ddl_forecast *ddl_forecast_new(void);
 void ddl_forecast_free(struct ddl_forecast*);
 
 // Forecasts `count` pedestrians whose last 8 positions are known: `past` is `[count][8]`, 0.4 s apart, the present
-// last. They have the ids 0, 1, 2 and so on. `request` may be null.
+// last. They have the ids 0, 1, 2 and so on. Positions are checked as those of a stream: see the misfits. `request` may
+// be null.
 enum ddl_status ddl_model_forecast(const struct ddl_model *model,
                                    const struct ddl_point *past,
                                    size_t count,

@@ -114,6 +114,7 @@ struct Risk {
     double total;
     /// `[N]`, `[12]`, `[12]`: that this pedestrian does; that somebody is close in this step; was by its end.
     Array<double> of_each, steps, until;
+    const char* warning; ///< What is doubtful of the plans; null if nothing is.
 };
 
 struct Cells {
@@ -173,7 +174,8 @@ public:
             answers.push_back({risks->total[p],
                                {risks->of_each + p * risks->pedestrians, risks->pedestrians},
                                {risks->steps + p * horizon, horizon},
-                               {risks->until + p * horizon, horizon}});
+                               {risks->until + p * horizon, horizon},
+                               risks->warning});
         }
         return answers;
     }

@@ -5,7 +5,7 @@ use crate::layout::{ddl_cells, ddl_misfit, ddl_occupancy, ddl_point, ddl_risks, 
 use crate::model::Threads;
 use ddl::data::{HORIZON, Misfit, OBSERVED, ObservationQuality, Window};
 use ddl::scene::{Area, Futures, Occupancy, Plan, SceneError};
-use ddl::{Answer, Forecast};
+use ddl::{Answer, Forecast, Note};
 use std::ffi::CString;
 use std::ptr;
 use std::sync::Arc;
@@ -22,6 +22,7 @@ pub(crate) struct ShownAnswer {
     radii: Vec<f64>,
     risk_numbers: Packed,
     pub(crate) risks: ddl_risks,
+    doubts: CString,
     times: Vec<f64>,
     probabilities: Vec<f32>,
     pub(crate) occupancy: ddl_occupancy,
@@ -40,6 +41,12 @@ pub(crate) struct LiveNotes {
     pub(crate) misfits: Vec<Misfit>,
     pub(crate) remembered: usize,
     pub(crate) warning: Option<String>,
+}
+
+/// What there is to warn of, besides misfits and refused memories, which are shown at every frame.
+pub(crate) fn warning_of(notes: &[Note]) -> Option<String> {
+    let told = notes.iter().filter(|note| !matches!(note, Note::Misfits { .. } | Note::MemoryRefused { .. }));
+    told.map(Note::to_string).reduce(|all, one| all + "; " + &one)
 }
 
 /// Arrays of numbers, one after the other.
@@ -164,6 +171,8 @@ impl ShownAnswer {
             index.ok_or_else(|| CallFailure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
         };
         let ego = ego.map(index).transpose()?;
+        let names: Vec<String> = (0..plans.len()).map(|index| index.to_string()).collect();
+        let doubts = warning_of(&Note::of_plans(names.iter().map(String::as_str).zip(plans), futures, ego));
         let risks = held.threads.run(|| {
             let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
             risks(futures, plans, within, ego).map_err(CallFailure::invalid)
@@ -176,7 +185,9 @@ impl ShownAnswer {
         numbers.add(risks.iter().flat_map(|risk| risk.until));
         let [total, of_each, steps, until] = numbers.arrays();
         let (plans, pedestrians) = (plans.len(), futures.pedestrians());
-        self.risks = ddl_risks { plans, pedestrians, total, of_each, steps, until };
+        self.doubts = c_text(doubts.as_deref().unwrap_or_default());
+        let warning = doubts.map_or(ptr::null(), |_| self.doubts.as_ptr());
+        self.risks = ddl_risks { plans, pedestrians, total, of_each, steps, until, warning };
         Ok(())
     }
 

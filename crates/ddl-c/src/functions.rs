@@ -3,7 +3,7 @@
 #![allow(unsafe_code, reason = "functions of C")]
 #![allow(clippy::missing_safety_doc, reason = "`ddl.h` begins with what holds for all pointers")]
 
-use crate::answer::{Held, LiveNotes};
+use crate::answer::{Held, LiveNotes, warning_of};
 use crate::boundary::{CallFailure, guarded, last_error, needed, text, values};
 use crate::handles::{ddl_forecast, ddl_live, ddl_model};
 use crate::layout::{
@@ -12,9 +12,9 @@ use crate::layout::{
 };
 use crate::live::LivePlace;
 use crate::model::LoadedModel;
-use ddl::data::{OBSERVED, PedestrianId, Window};
+use ddl::data::{Completeness, OBSERVED, PedestrianId, Position};
 use ddl::scene::{Plan, PlanPoint};
-use ddl::{GivenPlan, Request};
+use ddl::{GivenPlan, Note, ObservedPast, Request};
 use std::ffi::c_char;
 use std::mem::MaybeUninit;
 use std::sync::Arc;
@@ -78,7 +78,8 @@ pub extern "C" fn ddl_forecast_new() -> Box<ddl_forecast> {
 pub extern "C" fn ddl_forecast_free(_: Option<Box<ddl_forecast>>) {}
 
 /// Forecasts `count` pedestrians whose last 8 positions are known: `past` is `[count][8]`, 0.4 s apart, the present
-/// last. They have the ids 0, 1, 2 and so on. `request` may be null.
+/// last. They have the ids 0, 1, 2 and so on. Positions are checked as those of a stream: see the misfits. `request` may
+/// be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ddl_model_forecast(
     model: Option<&ddl_model>,
@@ -93,15 +94,28 @@ pub unsafe extern "C" fn ddl_model_forecast(
         let (past, request) = unsafe { (values(past, count.saturating_mul(OBSERVED), "past")?, asked(request)?) };
         let tracks = past.chunks_exact(OBSERVED);
         let tracks = tracks.map(|track| track.iter().map(|position| [position.x, position.y]).collect());
-        let ids = (0..count as i64).map(PedestrianId).collect();
-        let window = Window::new("past", 0, 1, ids, tracks.collect()).map_err(CallFailure::invalid)?;
-        if let Some(GivenPlan { ego: Some(ego), .. }) = request.plan()
-            && window.named(ego).is_none()
-        {
-            return Err(CallFailure::invalid(format!("ego is {ego}, but no such pedestrian is given")));
+        let tracks: Vec<Vec<Position>> = tracks.collect();
+        if tracks.is_empty() {
+            return Err(CallFailure::invalid("no pedestrian is given; a forecast is of at least one"));
         }
-        let answer = model.forecast(&window, &request)?;
-        forecast.0.hold(Some(Held { window, answer, threads: Arc::clone(&model.threads) }), &LiveNotes::default());
+        for (id, track) in tracks.iter().enumerate() {
+            if let Some(place) = track.iter().find(|place| place.iter().any(|axis| axis.is_nan())) {
+                return Err(CallFailure::invalid(format!("pedestrian {id} is at {place:?}; give finite positions")));
+            }
+        }
+        let observed = ObservedPast::of_tracks(&tracks, count, Completeness::Partial).map_err(CallFailure::invalid)?;
+        if let Some(GivenPlan { ego: Some(ego), .. }) = request.plan()
+            && !(observed.window.as_ref()).is_some_and(|window| window.named(ego).is_some())
+        {
+            return Err(CallFailure::invalid(format!("ego is {ego}, but no such pedestrian is forecast")));
+        }
+        let mut notes = LiveNotes { misfits: observed.misfits, ..LiveNotes::default() };
+        let held = observed.window.map(|window| {
+            let answer = model.forecast(&window, &request)?;
+            notes.warning = warning_of(&Note::of_given(request.plan(), &window, &answer));
+            Ok(Held { window, answer, threads: Arc::clone(&model.threads) })
+        });
+        forecast.0.hold(held.transpose()?, &notes);
         Ok(())
     })
 }

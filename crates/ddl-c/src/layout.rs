@@ -107,7 +107,7 @@ pub struct ddl_view {
     /// Whether the forecast was made at the last frame. False between two forecasts (option `every`): it is then of an
     /// earlier frame; misfits, memory and warning are always of the last frame.
     pub due: bool,
-    /// N, the number of pedestrians that are forecast; may be 0.
+    /// N, the number of pedestrians that are forecast; may be 0. Who is where nobody can be is not: see the misfits.
     pub pedestrians: usize,
     /// K.
     pub hypotheses: usize,
@@ -137,7 +137,7 @@ pub struct ddl_view {
     pub misfit_count: usize,
     /// Segments in the memory of the place; 0 without one.
     pub remembered: usize,
-    /// What is wrong with the memory of the place, though there is a forecast; null if nothing.
+    /// What is wrong with the memory of the place, or doubtful of the plan, though there is a forecast; null if nothing.
     pub warning: *const c_char,
 }
 
@@ -157,6 +157,8 @@ pub struct ddl_risks {
     pub steps: *const f64,
     /// `[P][12]`: that somebody was close by the end of this step.
     pub until: *const f64,
+    /// What is doubtful of the plans, which are counted from 0: their unit, times or place. Null if nothing is.
+    pub warning: *const c_char,
 }
 
 /// The cells and times of an occupancy.

@@ -1,6 +1,6 @@
 //! The tracks of one place, frame by frame.
 
-use crate::answer::{Held, LiveNotes, ShownAnswer};
+use crate::answer::{Held, LiveNotes, ShownAnswer, warning_of};
 use crate::boundary::CallFailure;
 use crate::layout::ddl_live_options;
 use crate::model::{LoadedModel, Threads};
@@ -48,12 +48,11 @@ impl LivePlace {
             session.push_at(at, seen).map_err(CallFailure::invalid)
         })?;
         let place = session.place(None);
-        let unwritten = now.notes.iter().find(|note| matches!(note, Note::MemoryUnwritten(_)));
         let refused = place.and_then(PlaceMemory::refused).map(|refusal| refusal.to_string());
         let notes = LiveNotes {
             misfits: now.notes.iter().flat_map(Note::misfits).map(|noted| noted.misfit).collect(),
             remembered: place.map_or(0, |place| place.memory().segments()),
-            warning: unwritten.map(Note::to_string).or(refused),
+            warning: refused.into_iter().chain(warning_of(&now.notes)).reduce(|all, one| all + "; " + &one),
         };
         if now.is_due {
             let threads = &self.threads;
@@ -84,7 +83,7 @@ impl LivePlace {
 fn tracks(options: &ddl_live_options<'_>) -> Result<LiveTracks, CallFailure> {
     let ddl_live_options { rate, whole, every, max_age, .. } = *options;
     if !(rate >= 0.0 && rate.is_finite()) {
-        return Err(CallFailure::invalid(format!("rate is {rate}; it must be frames per second, or 0 for times")));
+        return Err(CallFailure::invalid(format!("`rate` is {rate}; it must be frames per second, or 0 for times")));
     }
     let clock = match rate {
         0.0 => Clock::with_stamps(TimeUnit::Seconds),

@@ -129,15 +129,34 @@ void wrong_input_is_told(const ddl::Model& model) {
     REQUIRE(has(error_of([] { ddl::Model("no/such.model"); }, DDL_STATUS_FILE), "no/such.model"));
     ddl::Forecast forecast;
     REQUIRE(has(error_of([&] { ddl::forecast(model, {}, forecast); }), "pedestrian"));
+    const ddl::Plan standing = {{0.0, {0.0, 0.0}, 0.3}};
     auto wrong = meeting();
     wrong[3].x = nan;
     REQUIRE(has(error_of([&] { ddl::forecast(model, wrong, forecast); }), "NaN"));
+    // As in a stream: nobody is so fast, and who was beside the track once is told.
+    auto fast = meeting();
+    for (std::size_t t = 0; t < 8; ++t) fast[t].x = 4e5 * static_cast<double>(t);
+    ddl::forecast(model, fast, forecast);
+    REQUIRE(forecast.view().pedestrians == 1 && forecast.view().ids[0] == 1 && forecast.view().misfit_count > 0);
+    auto aside = meeting();
+    aside[3].x += 30.0;
+    ddl::forecast(model, aside, forecast);
+    REQUIRE(forecast.view().pedestrians == 2 && forecast.view().misfit_count == 1);
+    REQUIRE(forecast.view().misfits[0].id == 0 && forecast.view().warning == nullptr);
+    // Plans in centimetres, and a radius that no forecast sees.
+    const ddl::Plan centimetres = {{0.0, {0.0, 0.0}, 0.3}, {4.8, {20000.0, 0.0}, 0.3}};
+    ddl::forecast(model, meeting(), forecast, ddl::joint(centimetres));
+    REQUIRE(has(forecast.view().warning, "centimetres"));
+    ddl::forecast(model, meeting(), forecast, ddl::joint());
+    const ddl::Plan late = {{0.0, {0.0, 0.0}, 0.3}, {60.0, {0.0, 0.0}, 5.0}};
+    REQUIRE(forecast.view().warning == nullptr);
+    REQUIRE(has(forecast.risks({standing, late})[0].warning, "plan 1 has the radius 5 m"));
+    REQUIRE(forecast.risks({standing})[0].warning == nullptr);
     REQUIRE(has(error_of([&] { ddl::forecast(model, meeting(), forecast, ddl::joint({{9.0, {0.0, 0.0}, 0.3}})); }),
                 "the plan is from 9 s"));
     ddl::Request alone = ddl::joint({{0.0, {0.0, 0.0}, 0.3}});
     alone.joint = false;
     REQUIRE(has(error_of([&] { ddl::forecast(model, meeting(), forecast, alone); }), "set joint"));
-    const ddl::Plan standing = {{0.0, {0.0, 0.0}, 0.3}};
     for (const auto& [plan, words] : {std::pair{standing, "ego is 77"}, {ddl::Plan{}, "ego follows a plan"}})
         REQUIRE(has(error_of([&] { ddl::forecast(model, meeting(), forecast, ddl::joint(plan, 77)); }), words));
     ddl::LiveOptions options;
@@ -145,7 +164,7 @@ void wrong_input_is_told(const ddl::Model& model) {
     REQUIRE(has(error_of([&] { ddl::Live(model, options); }), "`max_age` is 3"));
     options = {};
     options.rate = -1.0;
-    REQUIRE(has(error_of([&] { ddl::Live(model, options); }), "rate is -1"));
+    REQUIRE(has(error_of([&] { ddl::Live(model, options); }), "`rate` is -1"));
 
     ddl::Live live(model);
     live.observe(1.0, meeting_at(0), forecast);

@@ -2,10 +2,10 @@
 
 use crate::errors::{ensure, of_any};
 use crate::forecasts::{EmptyFields, parts};
-use crate::observed::{ObservedScene, past_tracks};
+use crate::observed::past_tracks;
 use ddl::data::{Completeness, Window};
 use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine};
-use ddl::{Answer, Forecaster, WeightedGoals};
+use ddl::{Answer, Forecaster, ObservedPast, WeightedGoals};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -21,7 +21,7 @@ pub(crate) fn baseline<'py>(
     seed: u64,
     goals: Option<PyReadonlyArray3<'py, f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scene = ObservedScene::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
+    let scene = ObservedPast::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
     let forecaster: Box<dyn Forecaster + Send + Sync> = match name {
         "constant_velocity" => Box::new(ConstantVelocity::LastStep),
         "mean_velocity" => Box::new(ConstantVelocity::MeanObserved),
@@ -41,7 +41,7 @@ pub(crate) fn baseline<'py>(
 }
 
 /// The goals `(n, k, 2)` of the pedestrians in the window, equally likely.
-fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &ObservedScene) -> PyResult<Vec<WeightedGoals>> {
+fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &ObservedPast) -> PyResult<Vec<WeightedGoals>> {
     let goals = goals.ok_or_else(|| PyValueError::new_err("goals are missing"))?;
     let shape = goals.shape();
     ensure!(

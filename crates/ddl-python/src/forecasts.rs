@@ -3,10 +3,9 @@
 use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{ensure, of_any};
 use crate::moments::UserMoments;
-use crate::observed::ObservedScene;
 use crate::scene::FuturesHandle;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, TIME_STEP, Window};
-use ddl::{Answer, Forecast, Pace, RegionTable, Spread};
+use ddl::{Answer, Forecast, ObservedPast, Pace, RegionTable, Spread};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -30,7 +29,7 @@ pub(crate) struct EmptyFields {
 /// Keys and shapes are those of the fields of `Forecast` in `_forecast.py`.
 pub(crate) fn parts<'py>(
     py: Python<'py>,
-    observed: &ObservedScene,
+    observed: &ObservedPast,
     answer: Option<&Answer>,
     empty: EmptyFields,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -92,7 +91,7 @@ fn spread_and_regions(
 }
 
 /// The observation, and how well it is known.
-fn observed_rows(py: Python<'_>, observed: &ObservedScene, dict: &Bound<'_, PyDict>) -> PyResult<()> {
+fn observed_rows(py: Python<'_>, observed: &ObservedPast, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
     let qualities = || rows.iter().map(|row: &Option<usize>| window.zip(*row).map(|(window, i)| window.quality(i)));
@@ -118,7 +117,7 @@ pub(crate) fn named_parts<'py>(
     answer: &Answer,
     moments: UserMoments,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let observed = ObservedScene::of_window(window.clone());
+    let observed = ObservedPast::of_window(window.clone());
     let dict = parts(py, &observed, Some(answer), EmptyFields::default())?;
     dict.set_item("ids", names(py, window)?)?;
     let last = window.frames()[OBSERVED - 1];

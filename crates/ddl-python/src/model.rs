@@ -4,12 +4,13 @@ use crate::arrays::{array, numbers};
 use crate::errors::{ensure, of_any, raised};
 use crate::forecasts::{EmptyFields, named_parts, parts};
 use crate::interruptible::{Stop, run};
-use crate::observed::{ObservedScene, past_tracks};
+use crate::observed::{self, past_tracks};
 use crate::recording::{Recording, doubt};
 use crate::scene::plan;
 use ddl::data::{Completeness, PedestrianId, Window};
 use ddl::{
-    Answer, Ddl, DdlError, DeviceChoice, GivenPlan, ModelSource, Motions, RecordingPlayer, Request, WindowOptions,
+    Answer, Ddl, DdlError, DeviceChoice, GivenPlan, ModelSource, Motions, Note, ObservedPast, RecordingPlayer, Request,
+    WindowOptions,
 };
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -87,7 +88,8 @@ impl ForecastModel {
         self.0.parameter_count() + self.0.goal_model().parameter_count()
     }
 
-    /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`. Also returns text about doubtful positions.
+    /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`. Also returns texts about doubtful positions and a doubtful
+    /// plan.
     fn forecast<'py>(
         &self,
         py: Python<'py>,
@@ -98,7 +100,7 @@ impl ForecastModel {
         certificates: bool,
         joint: bool,
         given: Option<(PyReadonlyArray2<'py, f64>, Option<i64>)>,
-    ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
+    ) -> PyResult<(Vec<Bound<'py, PyDict>>, Vec<String>)> {
         let mut request = request(&self.0, samples, certificates, joint)?;
         if let Some((rows, ego)) = given {
             let (plan, ego) = (plan(&rows)?, ego.map(|row| PedestrianId(row).into()));
@@ -108,8 +110,8 @@ impl ForecastModel {
         let pasts = past.iter().map(past_tracks).collect::<PyResult<Vec<_>>>()?;
         let scenes = run(py, move |_| {
             let scenes = pasts.par_iter().zip(asked);
-            let scenes = scenes.map(|(past, asked)| ObservedScene::of_tracks(past, asked, completeness));
-            scenes.collect::<Result<Vec<ObservedScene>, _>>()
+            let scenes = scenes.map(|(past, asked)| ObservedPast::of_tracks(past, asked, completeness));
+            scenes.collect::<Result<Vec<ObservedPast>, _>>()
         })?;
         let scenes = scenes.map_err(of_any)?;
         let windows: Vec<Window> = scenes.iter().filter_map(|scene| scene.window.clone()).collect();
@@ -121,13 +123,19 @@ impl ForecastModel {
             certificates,
             joint: joint.then(|| request.plan().is_some()),
         };
-        let mut forecasts = self.answers(py, request, windows)?.into_iter();
-        let of_scene = |scene: &ObservedScene| {
+        let given = request.plan().cloned();
+        let answers = self.answers(py, request, windows.clone())?;
+        let pairs = windows.iter().zip(&answers);
+        let notes = pairs.flat_map(|(window, answer)| Note::of_given(given.as_ref(), window, answer));
+        let mut doubts: Vec<String> = scenes.iter().find_map(observed::doubt).into_iter().collect();
+        doubts.extend(notes.map(|note| note.to_string()));
+        let mut forecasts = answers.into_iter();
+        let of_scene = |scene: &ObservedPast| {
             let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
             parts(py, scene, forecast.as_ref(), empty)
         };
         let forecasts = scenes.iter().map(of_scene).collect::<PyResult<_>>()?;
-        Ok((forecasts, scenes.iter().find_map(ObservedScene::doubt)))
+        Ok((forecasts, doubts))
     }
 
     /// Forecasts each moment of the recording with pedestrians to forecast, or only the last of them. Also returns text
@@ -156,7 +164,7 @@ impl ForecastModel {
 
     /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
     fn goals(&self, py: Python<'_>, past: PyReadonlyArray3<'_, f64>, asked: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let scene = ObservedScene::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
+        let scene = ObservedPast::of_tracks(&past_tracks(&past)?, asked, Completeness::Partial).map_err(of_any)?;
         let k = self.hypotheses();
         let mut goals = vec![[f64::NAN; 2]; asked * k];
         let mut weights = vec![f64::NAN; asked * k];

@@ -3,9 +3,9 @@
 use crate::arrays::{array, flat};
 use crate::errors::{ensure, not_negative, of_any};
 use crate::interruptible::run;
-use ddl::Answer;
 use ddl::data::HORIZON;
 use ddl::scene::{Area, Futures, Occupancy, Plan, PlanPoint, SceneError};
+use ddl::{Answer, Note};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -55,7 +55,7 @@ fn plans_of(plans: &[PyReadonlyArray2<'_, f64>]) -> PyResult<Vec<Plan>> {
 #[pymethods]
 impl FuturesHandle {
     /// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each
-    /// step and until its end `(p, 12)`.
+    /// step and until its end `(p, 12)`; and texts about doubtful plans.
     fn risks<'py>(
         &self,
         py: Python<'py>,
@@ -63,7 +63,7 @@ impl FuturesHandle {
         within: f64,
         ego: Option<usize>,
         seen: bool,
-    ) -> PyResult<[Py<PyAny>; 4]> {
+    ) -> PyResult<([Py<PyAny>; 4], Vec<String>)> {
         not_negative("within", within)?;
         if seen && self.is_given {
             return Err(of_any(SceneError::PlanGiven));
@@ -72,18 +72,22 @@ impl FuturesHandle {
         let count = plans.len();
         let Some(futures) = self.futures.clone() else {
             let none = |width: usize| array(py, vec![0.0; count * width], [count, width]);
-            return Ok([array(py, vec![0.0; count], [count])?, none(0)?, none(HORIZON)?, none(HORIZON)?]);
+            let empty = [array(py, vec![0.0; count], [count])?, none(0)?, none(HORIZON)?, none(HORIZON)?];
+            return Ok((empty, Vec::new()));
         };
+        let names: Vec<String> = (0..count).map(|index| format!("plans[{index}]")).collect();
+        let doubts = Note::of_plans(names.iter().map(String::as_str).zip(&plans), &futures, ego);
         let people = futures.pedestrians();
         let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
         let risks = run(py, move |_| risks(&futures, &plans, within, ego))?.map_err(of_any)?;
         let of_each = risks.iter().flat_map(|risk| risk.pedestrians.clone());
-        Ok([
+        let arrays = [
             array(py, risks.iter().map(|risk| risk.total).collect(), [count])?,
             array(py, of_each.collect(), [count, people])?,
             array(py, risks.iter().flat_map(|risk| risk.steps).collect(), [count, HORIZON])?,
             array(py, risks.iter().flat_map(|risk| risk.until).collect(), [count, HORIZON])?,
-        ])
+        ];
+        Ok((arrays, doubts.iter().map(Note::to_string).collect()))
     }
 
     /// For p plans: the expected least distance `(p,)`, and that of each pedestrian `(p, n)`.

@@ -87,6 +87,7 @@ pub use tracks::csv_table::{csv_table, table_metres, table_share};
 pub use tracks::json_lines::json_lines;
 pub use tracks::moment::Moment;
 pub use tracks::observed::{NobodyObserved, ObservedTracks, in_frames, misfits_of, noise, steps_in_words};
+pub use tracks::past::ObservedPast;
 pub use tracks::timed::TimedRecording;
 pub use tracks::unfamiliar::UnfamiliarMotions;
 pub use tracks::windows::{OutOfGap, WindowOptions};

@@ -5,6 +5,7 @@ pub(crate) mod csv_table;
 pub(crate) mod json_lines;
 pub(crate) mod moment;
 pub(crate) mod observed;
+pub(crate) mod past;
 pub(crate) mod timed;
 pub(crate) mod unfamiliar;
 pub(crate) mod windows;

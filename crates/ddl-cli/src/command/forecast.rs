@@ -12,6 +12,6 @@ mod stream;
 
 pub(crate) use answer::answer;
 pub(crate) use arguments::ForecastCommand;
-pub(crate) use plans::{NamedPlan, read_plans, tell_doubts_of_ego};
+pub(crate) use plans::{NamedPlan, PlanFile};
 pub(crate) use state::StreamState;
 pub(crate) use stream::{AnsweringCommand, OutputFormat, StreamOptions};

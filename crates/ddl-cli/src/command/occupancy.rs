@@ -76,7 +76,7 @@ impl OccupancyCommand {
             }
             (None, GridFormat::Jsonl) => {}
         }
-        answer(&self)
+        answer(&self, StreamState::default())
     }
 
     fn format(&self) -> GridFormat {
@@ -89,9 +89,7 @@ impl OccupancyCommand {
             return Ok(Area::new([x0, y0], [x1, y1], self.cell)?);
         }
         let (area, left_out) = moment.answer.futures()?.area(MARGIN, self.cell, times)?;
-        if let Some(note) = Note::outside_area(&left_out, moment.window) {
-            state.tell_once("area", format_args!("{}, at {} (told once)", note.line(), moment.when()));
-        }
+        state.tell_notes_once(Note::outside_area(&left_out, moment.window), moment);
         Ok(area)
     }
 

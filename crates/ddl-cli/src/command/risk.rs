@@ -1,14 +1,14 @@
 //! `ddl risk`: how likely somebody comes close to a plan.
 
 use crate::command::forecast::{
-    AnsweringCommand, NamedPlan, OutputFormat, StreamOptions, StreamState, answer, read_plans, tell_doubts_of_ego,
+    AnsweringCommand, NamedPlan, OutputFormat, PlanFile, StreamOptions, StreamState, answer,
 };
 
 use anyhow::Context as _;
 use clap::Args;
-use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
+use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP};
 use ddl::scene::{Clearance, Plan};
-use ddl::{Moment, table_metres, table_share};
+use ddl::{Moment, Note, table_metres, table_share};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -78,12 +78,9 @@ struct PedestrianRisk {
 impl RiskCommand {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         // Faults of the plans show before the model is loaded.
-        read_plans(&self.plan)?;
-        answer(&self)
-    }
-
-    fn ego(&self, window: &Window) -> Option<usize> {
-        window.named(&PedestrianName::of_text(self.ego.as_deref()?))
+        let mut state = StreamState::default();
+        state.plans = PlanFile::open(&self.plan, false)?;
+        answer(&self, state)
     }
 
     fn csv(&self, lines: &[PlanLine<'_>], headed: bool) -> anyhow::Result<String> {
@@ -116,14 +113,16 @@ impl AnsweringCommand for RiskCommand {
     }
 
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
-        let named = read_plans(&self.plan)?;
+        let named = state.plans.read();
         let plans: Vec<Plan> = named.iter().map(|named| named.plan.clone()).collect();
-        let all: Vec<&Plan> = plans.iter().collect();
+        let ego_name = self.ego.as_deref().map(PedestrianName::of_text);
         let mut lines = Vec::new();
         for moment in moments {
-            tell_doubts_of_ego(self.ego.as_deref(), &all, moment.window, state);
-            let ego = self.ego(moment.window);
+            let ego = ego_name.as_ref().and_then(|name| moment.window.named(name));
             let futures = moment.answer.futures()?;
+            state.tell_notes_once(Note::of_ego(ego_name.as_ref(), moment.window), moment);
+            let names = named.iter().map(|NamedPlan { name, plan }| (name.as_str(), plan));
+            state.tell_notes_once(Note::of_plans(names, futures, ego), moment);
             let risks = if self.unseen {
                 futures.risks(&plans, self.within, ego)?
             } else {

@@ -68,7 +68,7 @@ class Model:
         certificates: bool,
         joint: bool,
         given: tuple[Floats, int | None] | None,
-    ) -> tuple[list[dict[str, Any]], str | None]: ...
+    ) -> tuple[list[dict[str, Any]], list[str]]: ...
     def forecast_recording(
         self,
         recording: Recording,
@@ -127,7 +127,7 @@ class Recording:
 class Futures:
     def risks(
         self, plans: Sequence[Floats], within: float, ego: int | None, seen: bool
-    ) -> tuple[Floats, Floats, Floats, Floats]: ...
+    ) -> tuple[tuple[Floats, Floats, Floats, Floats], list[str]]: ...
     def clearances(self, plans: Sequence[Floats]) -> tuple[Floats, Floats]: ...
     def occupancy(
         self, options: tuple[float, float, float, float], area: tuple[float, float, float, float] | None

@@ -229,7 +229,8 @@ class Forecast:
         Warns
         -----
         DoubtWarning
-            Pedestrians are seen now who could not be forecast: they do not count, and are NaN.
+            Pedestrians are seen now who could not be forecast: they do not count, and are NaN. A plan is doubtful: its
+            speed, its times, its distance from everybody, a radius after 4.8 s.
         """
         scene, rows = self._scene(), self.valid
         if self._left_out > 0:
@@ -241,7 +242,9 @@ class Forecast:
             if found.size == 0:
                 raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
             row = int(found[0])
-        total, people, steps, until = scene.risks(_plans(plans), within, row, seen)
+        (total, people, steps, until), doubts = scene.risks(_plans(plans), within, row, seen)
+        for doubt in doubts:
+            warnings.warn(doubt, DoubtWarning, stacklevel=2)
         of_each = np.full((len(total), len(self)), np.nan)
         of_each[:, rows] = people
         return Risk(total, of_each, steps, until)

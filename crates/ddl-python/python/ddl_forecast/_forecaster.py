@@ -161,13 +161,13 @@ class Forecaster:
             if ego is not None and not (0 <= ego < len(rows) and np.isfinite(rows[ego, -1]).all()):
                 raise ValueError(f"ego is row {ego}, which past does not have or does not observe now")
         given = None if plan is None else (plan_rows(plan), ego)
-        made, doubt = self._core.forecast(arrays, asked, samples, whole, certificates, joint, given)
+        made, doubts = self._core.forecast(arrays, asked, samples, whole, certificates, joint, given)
         forecasts = []
         for parts, array, count in zip(made, arrays, asked, strict=True):
             missing = np.isnan(parts["weights"][:, 0]) if parts["weights"].size else np.ones(count, dtype=np.bool_)
             left_out = int((missing & np.isfinite(array[:count, -1]).all(axis=1)).sum()) if joint else 0
             forecasts.append(Forecast._of(parts, joint=joint, left_out=left_out))
-        return _told(forecasts, doubt)
+        return _told(forecasts, doubts)
 
     def forecast_recording(
         self,
@@ -211,7 +211,7 @@ class Forecaster:
         made, doubt = self._core.forecast_recording(
             recording._core, last, samples, whole, max_age, every, certificates, joint
         )
-        return _told([Forecast._of(parts, joint=joint) for parts in made], doubt and f"{recording.name}: {doubt}")
+        return _told([Forecast._of(parts, joint=joint) for parts in made], [f"{recording.name}: {doubt}"] if doubt else [])
 
     def forecast_table(
         self,
@@ -300,9 +300,9 @@ def _tell_doubt(recording: Recording) -> None:
         warnings.warn(f"{recording.name}: {doubt}", DoubtWarning, stacklevel=3)
 
 
-def _told(forecasts: list[Forecast], doubt: str | None) -> list[Forecast]:
-    """The forecasts, with warnings about doubtful positions and about the first one with unfamiliar motions."""
-    if doubt is not None:
+def _told(forecasts: list[Forecast], doubts: list[str]) -> list[Forecast]:
+    """The forecasts, with warnings about doubts and about the first one with unfamiliar motions."""
+    for doubt in doubts:
         warnings.warn(doubt, DoubtWarning, stacklevel=4)
     for forecast in forecasts:
         words = forecast.unfamiliar()

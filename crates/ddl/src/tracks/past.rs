@@ -1,29 +1,32 @@
-//! What was observed of a scene or recording, as windows to forecast from.
+//! Positions that are given 0.4 s apart, without frames, checked as those of streams are.
 
-use crate::arrays::tracks;
-use ddl::data::{Completeness, LiveError, LiveTracks, Misfit, OBSERVED, PedestrianId, Position, Window};
-use numpy::PyReadonlyArray3;
-use pyo3::prelude::*;
+use ddl_core::{OBSERVED, PedestrianId, Position, Window};
+use ddl_data::{Completeness, LiveError, LiveTracks, Misfit};
 
-/// The pedestrians of a scene that can be forecast, and their positions in the user's array.
+/// The pedestrians of a scene that can be forecast, of those whose last 8 positions are given.
+///
+/// A position that no pedestrian can have reached is left out, or begins the track anew, as in [`LiveTracks`].
 #[derive(Debug, Clone)]
-pub(crate) struct ObservedScene {
+#[non_exhaustive]
+pub struct ObservedPast {
     /// `None` when no pedestrian can be forecast.
-    pub(crate) window: Option<Window>,
+    pub window: Option<Window>,
     /// Index in the window of each requested pedestrian; `None` for one that cannot be forecast.
-    pub(crate) rows: Vec<Option<usize>>,
-    /// The positions that were left out, or begin a track anew; the ticks are steps from 0.
-    pub(crate) misfits: Vec<Misfit>,
+    pub rows: Vec<Option<usize>>,
+    /// The positions that were left out, or begin a track anew: pedestrians are counted from 0, ticks are steps from 0.
+    pub misfits: Vec<Misfit>,
 }
 
-impl ObservedScene {
-    /// The observation of 8 positions each, NaN where a pedestrian was not observed. The first `asked` pedestrians are
-    /// forecast; the others are their neighbours.
-    pub(crate) fn of_tracks(
-        tracks: &[Vec<Position>],
-        asked: usize,
-        completeness: Completeness,
-    ) -> Result<Self, LiveError> {
+impl ObservedPast {
+    /// The observation of 8 positions each (m), 0.4 s apart, NaN where a pedestrian was not observed. The first `asked`
+    /// pedestrians are forecast; the others are their neighbours.
+    ///
+    /// # Errors
+    /// A position is infinite or too far away.
+    ///
+    /// # Panics
+    /// When a track has less than 8 positions.
+    pub fn of_tracks(tracks: &[Vec<Position>], asked: usize, completeness: Completeness) -> Result<Self, LiveError> {
         let mut live = LiveTracks::new().with_completeness(completeness);
         let mut misfits = Vec::new();
         for frame in 0..OBSERVED {
@@ -46,20 +49,9 @@ impl ObservedScene {
     }
 
     /// All pedestrians of a window, in its order.
-    pub(crate) fn of_window(window: Window) -> Self {
+    #[must_use]
+    pub fn of_window(window: Window) -> Self {
         let rows = (0..window.len()).map(Some).collect();
         Self { window: Some(window), rows, misfits: Vec::new() }
     }
-
-    /// Text about positions of the array that do not fit their tracks.
-    pub(crate) fn doubt(&self) -> Option<String> {
-        let place = |misfit: &Misfit| format!("past[{}, {}]", misfit.pedestrian.0, misfit.tick);
-        let doubt = Misfit::words(&self.misfits, place)?;
-        Some(doubt + "; check that positions are in metres and steps are 0.4 s")
-    }
-}
-
-/// The tracks of `(n, 8, 2)` positions.
-pub(crate) fn past_tracks(past: &PyReadonlyArray3<'_, f64>) -> PyResult<Vec<Vec<Position>>> {
-    tracks("past", past, OBSERVED, true)
 }

@@ -11,8 +11,8 @@ use ddl::data::{LiveTracks, Window};
 use ddl::{DdlError, Moment, Request, SceneWindows, Session};
 use ddl_mcap::ForecastLog;
 
-/// Answers every moment of the tracks.
-pub(crate) fn answer(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
+/// Answers every moment of the tracks; `state` is that before the first.
+pub(crate) fn answer(command: &dyn AnsweringCommand, mut state: StreamState) -> anyhow::Result<()> {
     let stream = command.stream();
     stream.machine.prepare_for_little()?;
     if stream.memory.is_some() && !stream.tracks.are_live() {
@@ -28,11 +28,10 @@ pub(crate) fn answer(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
         if let Some(path) = log {
             bail!("{}: MCAP is written from a file of tracks, not from standard input", path.display());
         }
-        return live::run(command);
+        return live::run(command, state);
     }
     let model = stream.load()?;
     let (observed, topic) = stream.tracks.observed(model.config())?;
-    let mut state = StreamState::default();
     state.frame_id = topic.as_ref().and_then(|topic| topic.frame_id.clone());
     let (mut lines, mut bytes) = (0, 0);
     let interrupt = Interrupt::catch()?;

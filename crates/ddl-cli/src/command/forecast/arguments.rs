@@ -1,13 +1,11 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
 use crate::command::forecast::answer::answer;
-use crate::command::forecast::plans::{GivenPlanOptions, tell_doubts_of_ego};
+use crate::command::forecast::plans::GivenPlanOptions;
 use crate::command::forecast::state::StreamState;
 use crate::command::forecast::stream::{AnsweringCommand, OutputFormat, StreamOptions};
 use anyhow::bail;
 use clap::Args;
-use ddl::data::Window;
-use ddl::scene::Plan;
 use ddl::{Moment, Request, csv_table, json_lines};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
@@ -68,7 +66,9 @@ impl ForecastCommand {
         if let Some((_, twice)) = levels.find(|(i, level)| self.region[..*i].contains(level)) {
             bail!("--region names {twice} twice; name each probability once");
         }
-        answer(&self)
+        let mut state = StreamState::default();
+        self.given.open(&mut state)?;
+        answer(&self, state)
     }
 }
 
@@ -77,13 +77,8 @@ impl AnsweringCommand for ForecastCommand {
         &self.stream
     }
 
-    fn request(&self, windows: &[Window], state: &mut StreamState) -> anyhow::Result<Request> {
-        let given = self.given.read()?;
-        for window in given.iter().flat_map(|_| windows) {
-            let plans: Vec<&Plan> = given.iter().map(|given| &given.plan).collect();
-            tell_doubts_of_ego(self.given.ego.as_deref(), &plans, window, state);
-        }
-        let mut request = match (given, self.joint, self.one) {
+    fn request(&self, state: &mut StreamState) -> anyhow::Result<Request> {
+        let mut request = match (self.given.now(state), self.joint, self.one) {
             (Some(plan), ..) => Request::given(plan),
             (None, true, _) => Request::joint(),
             (None, false, true) => Request::one(),

@@ -24,7 +24,7 @@ const SEVERAL_FRAMES: usize = 10;
 const MOST_TAKEN: usize = 4096;
 
 /// Forecasts every frame as soon as it is complete, until standard input ends or the reader closes the output.
-pub(super) fn run(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
+pub(super) fn run(command: &dyn AnsweringCommand, state: StreamState) -> anyhow::Result<()> {
     let model = command.stream().load()?;
     let memory = match command.stream().memory.as_deref() {
         Some(path) => {
@@ -45,7 +45,7 @@ pub(super) fn run(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
             std::process::exit(130);
         })?;
     }
-    let answered = answer(command, &Arc::new(model), &watching);
+    let answered = answer(command, state, &Arc::new(model), &watching);
     // The memory is also written if the stream ended with an error.
     let written = lock(&watching).end();
     if let (Err(_), Err(error)) = (&answered, &written) {
@@ -54,7 +54,12 @@ pub(super) fn run(command: &dyn AnsweringCommand) -> anyhow::Result<()> {
     answered.and(written)
 }
 
-fn answer(command: &dyn AnsweringCommand, model: &Arc<Ddl>, watching: &Mutex<WatchedStream>) -> anyhow::Result<()> {
+fn answer(
+    command: &dyn AnsweringCommand,
+    state: StreamState,
+    model: &Arc<Ddl>,
+    watching: &Mutex<WatchedStream>,
+) -> anyhow::Result<()> {
     let forecast = command.stream();
     let units = forecast.tracks.live_units(model.config())?;
     let homography = units.homography()?;
@@ -74,7 +79,7 @@ fn answer(command: &dyn AnsweringCommand, model: &Arc<Ddl>, watching: &Mutex<Wat
         clock,
         early: Vec::new(),
         output: StreamOutput::open(forecast.output.as_deref())?,
-        state: StreamState::default(),
+        state,
         left_out: LeftOut::default(),
         is_empty: true,
         first_rows: FirstRows::default(),

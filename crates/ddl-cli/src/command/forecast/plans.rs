@@ -2,13 +2,15 @@
 
 use crate::command::forecast::state::StreamState;
 use crate::small_file;
+use crate::telling::{tell, words};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::GivenPlan;
-use ddl::data::{OBSERVED, PedestrianName, Window, distance};
+use ddl::data::PedestrianName;
 use ddl::scene::{Plan, PlanPoint};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// A plan that the pedestrians respond to.
 #[derive(Debug, Clone, Args)]
@@ -20,56 +22,74 @@ pub(crate) struct GivenPlanOptions {
     plan: Option<PathBuf>,
     /// With --plan: the pedestrian of the tracks who follows the plan [default: none of them]
     #[arg(long, value_name = "NAME", requires = "plan")]
-    pub(crate) ego: Option<String>,
+    ego: Option<String>,
 }
 
 impl GivenPlanOptions {
-    /// The plan; an error if the file has several.
-    pub(crate) fn read(&self) -> anyhow::Result<Option<GivenPlan>> {
-        let Some(path) = &self.plan else {
-            return Ok(None);
-        };
-        let mut plans = read_plans(path)?;
-        let name = path.display();
-        match (plans.pop(), plans.len()) {
-            (Some(NamedPlan { plan, .. }), 0) => {
-                Ok(Some(GivenPlan { plan, ego: self.ego.as_deref().map(PedestrianName::of_text) }))
-            }
-            (_, others) => bail!("{name} holds {} plans; the pedestrians can respond to one", others + 1),
+    /// Reads the plan for the first time.
+    pub(super) fn open(&self, state: &mut StreamState) -> anyhow::Result<()> {
+        if let Some(path) = &self.plan {
+            state.plans = PlanFile::open(path, true)?;
         }
+        Ok(())
+    }
+
+    /// The plan as the file has it now.
+    pub(super) fn now(&self, state: &mut StreamState) -> Option<GivenPlan> {
+        let NamedPlan { plan, .. } = state.plans.read().first()?.clone();
+        Some(GivenPlan { plan, ego: self.ego.as_deref().map(PedestrianName::of_text) })
     }
 }
 
-/// Tells once if the pedestrian who is said to follow the plans is not there, or is far from where they start.
-pub(crate) fn tell_doubts_of_ego(ego: Option<&str>, plans: &[&Plan], window: &Window, state: &mut StreamState) {
-    let Some(name) = ego else { return };
-    let Some(i) = window.named(&PedestrianName::of_text(name)) else {
-        state.tell_once(
-            "no ego",
-            format_args!(
-                "note: pedestrian {name} of --ego is missing in some moments; in these the plan is taken to be that of \
-                 somebody who is not in the tracks (told once)"
-            ),
-        );
-        return;
-    };
-    let apart = |plan: &&&Plan| distance(plan.at(0.0).position, window.observed(i)[OBSERVED - 1]);
-    if let Some(far) = plans.iter().find(|plan| apart(plan) > FAR) {
-        state.tell_once(
-            "far ego",
-            format_args!(
-                "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after \
-                 the moment, and the positions of the tracks (told once)",
-                apart(&far)
-            ),
-        );
+/// A file of plans that another program may replace at any time; no plans without a file.
+#[derive(Debug, Default)]
+pub(crate) struct PlanFile {
+    path: PathBuf,
+    holds_one: bool,
+    /// The last plans that could be read.
+    plans: Rc<[NamedPlan]>,
+    /// Whether their last line had an end. Then one without is not whole.
+    is_ended: bool,
+    /// Why the file cannot be read now, as was told; empty if it can.
+    fault: String,
+}
+
+impl PlanFile {
+    pub(crate) fn open(path: &Path, holds_one: bool) -> anyhow::Result<Self> {
+        let mut opened = Self { path: path.to_owned(), holds_one, ..Self::default() };
+        opened.read_now()?;
+        Ok(opened)
+    }
+
+    /// The plans as the file has them now. Of a file that is missing or half written, those before, which is told until
+    /// it can be read again.
+    pub(crate) fn read(&mut self) -> Rc<[NamedPlan]> {
+        if !self.plans.is_empty() {
+            let fault = self.read_now().err().map(|error| words(&error)).unwrap_or_default();
+            if !fault.is_empty() && self.fault.is_empty() {
+                tell(format_args!("warning: {fault}; the plan before goes on counting until the file can be read"));
+            }
+            self.fault = fault;
+        }
+        Rc::clone(&self.plans)
+    }
+
+    fn read_now(&mut self) -> anyhow::Result<()> {
+        let (path, text) = (&self.path, small_file::read(&self.path)?);
+        let is_ended = text.ends_with('\n');
+        if self.is_ended && !is_ended {
+            bail!("{}: the last line has no end, so the file is not whole", path.display());
+        }
+        let plans = plans_of(path, &text)?;
+        if self.holds_one && plans.len() > 1 {
+            bail!("{} holds {} plans; the pedestrians can respond to one", path.display(), plans.len());
+        }
+        (self.plans, self.is_ended) = (plans.into(), is_ended);
+        Ok(())
     }
 }
 
-/// A plan that starts farther than this from the pedestrian who follows it is doubtful, metres.
-const FAR: f64 = 2.0;
-
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct NamedPlan {
     /// The text of its column `plan`; empty in a file of one plan.
     pub(crate) name: String,
@@ -89,9 +109,8 @@ struct PlanRow {
 
 /// The plans of a csv file with the columns `t,x,y`, and where there are `radius` and `plan`: rows of one plan stand
 /// together and have one name.
-pub(crate) fn read_plans(path: &Path) -> anyhow::Result<Vec<NamedPlan>> {
+fn plans_of(path: &Path, text: &str) -> anyhow::Result<Vec<NamedPlan>> {
     let name = path.display();
-    let text = small_file::read(path)?;
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
     let headers = reader.headers().with_context(|| format!("cannot read the plan {name}"))?.clone();
     for column in ["t", "x", "y"] {

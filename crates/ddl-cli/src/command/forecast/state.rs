@@ -1,10 +1,11 @@
 //! The state that one group of frames passes on to the next, and what is told once of a stream.
 
 use crate::command::forecast::frames::StatedTime;
+use crate::command::forecast::plans::PlanFile;
 use crate::telling::tell;
 use crate::units::Units;
 use ddl::data::{Clock, LiveTracks};
-use ddl::{Moment, UnfamiliarMotions};
+use ddl::{Moment, Note, UnfamiliarMotions};
 use std::collections::BTreeSet;
 use std::fmt;
 
@@ -19,12 +20,21 @@ pub(crate) struct StreamState {
     /// The coordinate frame that the tracks name.
     pub(crate) frame_id: Option<String>,
     told: BTreeSet<&'static str>,
+    /// The plans of the command, if it has some.
+    pub(crate) plans: PlanFile,
 }
 
 impl StreamState {
     /// Whether nothing was written yet; only the first call says so.
     pub(crate) fn is_first_text(&mut self) -> bool {
         !std::mem::replace(&mut self.headed, true)
+    }
+
+    /// Tells remarks of which one of each kind is told, at this moment for the first time.
+    pub(crate) fn tell_notes_once(&mut self, notes: impl IntoIterator<Item = Note>, moment: &Moment<'_>) {
+        for note in notes {
+            self.tell_once(note.key(), format_args!("{}, at {} (told once)", note.line(), moment.when()));
+        }
     }
 
     /// Tells something that is told once.

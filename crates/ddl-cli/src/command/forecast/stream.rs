@@ -8,8 +8,8 @@ use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
-use ddl::data::{Clock, Window};
-use ddl::{Answer, Ddl, Moment, Request, SceneWindows};
+use ddl::data::Clock;
+use ddl::{Answer, Ddl, Moment, Note, Request, SceneWindows};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 use std::io::IsTerminal as _;
@@ -60,8 +60,8 @@ pub(crate) enum OutputFormat {
 pub(crate) trait AnsweringCommand {
     fn stream(&self) -> &StreamOptions;
 
-    /// What it asks of the model for these windows: the joint futures of each.
-    fn request(&self, _windows: &[Window], _state: &mut StreamState) -> anyhow::Result<Request> {
+    /// What it asks of the model now: the joint futures of each window.
+    fn request(&self, _state: &mut StreamState) -> anyhow::Result<Request> {
         Ok(Request::joint())
     }
 
@@ -89,8 +89,12 @@ pub(super) fn answers_of<T>(
     answer: impl FnOnce(SceneWindows<'_>, Request) -> anyhow::Result<Vec<Answer>>,
     make: impl FnOnce(&[Moment<'_>], &mut StreamState) -> anyhow::Result<T>,
 ) -> anyhow::Result<T> {
-    let answers = answer(windows, command.request(windows.windows, state)?)?;
+    let request = command.request(state)?;
+    let answers = answer(windows, request.clone())?;
     let moments = windows.moments(&answers, clock);
+    for moment in &moments {
+        state.tell_notes_once(Note::of_given(request.plan(), moment.window, moment.answer), moment);
+    }
     state.warn_of_violation(&moments);
     state.unfamiliar.add(&moments);
     if command.stream().tracks.are_live()
