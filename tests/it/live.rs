@@ -100,7 +100,7 @@ fn every_frame_is_answered_before_the_next_one() {
 #[test]
 fn a_plan_that_cannot_be_read_keeps_the_one_before() {
     let place = Place::empty();
-    let [near, far] = ["t,x,y\n0,6,0\n4.8,6,0.5\n", "t,x,y\n0,30,30\n4.8,30,31\n"];
+    let [near, far] = ["t,x,y\n0,3,0\n4.8,3,0.5\n", "t,x,y\n0,30,30\n4.8,30,31\n"];
     place.write("robot.csv", near);
     let mut live = LiveProgram::of(&place, "risk - --fps 2.5 --plan robot.csv --format jsonl");
     live.write("frame,pedestrian,x,y\n");
@@ -123,7 +123,7 @@ fn a_plan_that_cannot_be_read_keeps_the_one_before() {
     place.remove("robot.csv");
     assert!(risk() < 0.01);
     // A line that has no end may lack digits.
-    for half in ["", "t,x,y\n0,6", "t,x,y\n0,6,0\n4.8,6,0", "t,x,y\n"] {
+    for half in ["", "t,x,y\n0,3", "t,x,y\n0,3,0\n4.8,3,0", "t,x,y\n"] {
         place.write("robot.csv", half);
         assert!(risk() < 0.01, "{half}");
     }

@@ -23,7 +23,7 @@ mod tests;
 
 use crate::{energy::Energy, error::SceneError, futures::Futures, plan::Plan};
 use course::legs;
-use crowd::{CrowdAtRisk, Hits, Sweep};
+use crowd::{CrowdAtRisk, Sweep};
 use ddl_core::HORIZON;
 use quadrature::DEVIATIONS;
 pub(crate) use quadrature::probability;
@@ -193,31 +193,22 @@ fn farther_shares(distances: &[f64; DEVIATIONS], width: f64) -> [f64; CELLS] {
 type StayingAway = [f64; 2 * HORIZON];
 
 /// Of each hypothesis of pedestrian `i`; `None` if all surely do. People who are close already cannot keep away. The
-/// odds that a pedestrian comes close later are multiplied by a factor; the probability that it does so by an earlier
-/// step, or on one of its hypotheses, falls in proportion.
+/// odds that the others come close on a hypothesis are multiplied by a factor; the probability that they do so by an
+/// earlier step falls in proportion.
 fn staying_away(crowd: &CrowdAtRisk, sweep: &Sweep, i: usize, odds: f64) -> Option<Vec<StayingAway>> {
-    let shares = &crowd.shares[i];
-    let hits = shares.iter().enumerate().map(|(h, share)| (*share > 0.0).then(|| crowd.hits(sweep, i, h)).flatten());
-    let hits: Vec<Option<Hits>> = hits.collect();
-    if hits.iter().all(Option::is_none) {
-        return None;
-    }
-    let mut close = [0.0; 2];
-    for (share, hits) in shares.iter().zip(&hits).filter_map(|(share, hits)| Some((share, hits.as_ref()?))) {
-        for (sum, of_hypothesis) in close.iter_mut().zip(hits.until[HORIZON - 1]) {
-            *sum += share * of_hypothesis;
-        }
-    }
-    let of_others = close[1] / f64::max(1.0 - close[0], f64::MIN_POSITIVE);
-    let reduction = odds / (1.0 - of_others + of_others * odds);
-    let away = |hits: Option<Hits>| {
+    let mut some = false;
+    let of_hypothesis = |(h, share): (usize, &f64)| {
         let mut away = [1.0; 2 * HORIZON];
-        for (away, [now, later]) in
-            away.iter_mut().zip(hits.iter().flat_map(|hits| hits.steps.iter().chain(&hits.until)))
-        {
+        let Some(hits) = (*share > 0.0).then(|| crowd.hits(sweep, i, h)).flatten() else { return away };
+        some = true;
+        let [close_now, close_later] = hits.until[HORIZON - 1];
+        let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
+        let reduction = odds / (1.0 - of_others + of_others * odds);
+        for (away, [now, later]) in away.iter_mut().zip(hits.steps.iter().chain(&hits.until)) {
             *away -= now + reduction * later;
         }
         away
     };
-    Some(hits.into_iter().map(away).collect())
+    let all = crowd.shares[i].iter().enumerate().map(of_hypothesis).collect();
+    some.then_some(all)
 }

@@ -76,8 +76,8 @@ def scene(rng, size, deviation, ego):
         for i in set(range(n)) - {ego}:
             # The odds of who is not close now are multiplied by the factor.
             factor = 1.0 if name == "unseen" else odds[int(i in together)]
-            now, later = weights @ close[i, :, :, -1]
-            share = later / max(1 - now, 1e-300)
+            now, later = close[i, :, :, -1].T[:, :, None]
+            share = later / np.maximum(1 - now, 1e-300)
             reduction = factor / (1 - share + share * factor)
             of_futures = close[i, :, 0] + reduction * close[i, :, 1]
             nobody *= 1 - of_futures
