@@ -9,7 +9,7 @@ use ddl_core::{OBSERVED, OtherObservation, PedestrianId, PedestrianNames, Positi
 use crate::clock::{Clock, ClockError};
 use crate::error::LiveError;
 use crate::observe::{
-    self, Misfit, MisfitTreatment, ON_STEP, ObservedPositions, ObservedTrack, RecordingNoise, TimedPosition,
+    self, Exchange, Misfit, ON_STEP, ObservedPositions, ObservedTrack, RecordingNoise, TimedPosition,
 };
 use crate::recording::Recording;
 
@@ -252,9 +252,10 @@ impl LiveTracks {
         &self.noise
     }
 
-    /// Whether the last row of a pedestrian was left out.
+    /// Whether the last row of a pedestrian was left out, or is rather wrong than right.
     pub fn has_left_out(&self, id: PedestrianId) -> bool {
-        self.pedestrians.get(&id).is_some_and(|one| one.track.last_time() < one.last_row as f64)
+        let is_wrong = |one: &LivePedestrian| one.track.otherwise().is_some_and(|(.., is_likelier)| is_likelier);
+        self.pedestrians.get(&id).is_some_and(|one| one.track.last_time() < one.last_row as f64 || is_wrong(one))
     }
 
     /// The rows that the last frame showed to be wrong, and the tracks that it began anew.
@@ -285,7 +286,7 @@ impl LiveTracks {
         self.misfits.clear();
         let (tick_time, rows) = (self.tick_time(), positions.len());
         let known = self.noise.clone();
-        let exchanged = self.exchanged(tick as f64, &positions);
+        let exchanges = self.exchanges(tick as f64, &positions);
         for (id, position) in positions {
             let time = tick as f64;
             match self.pedestrians.entry(id) {
@@ -297,12 +298,12 @@ impl LiveTracks {
                     let pedestrian = Arc::make_mut(place.get_mut());
                     pedestrian.last_row = tick;
                     let row = TimedPosition { time, position };
-                    let swap = exchanged.iter().find(|(other, _)| *other == id);
-                    let misfit = if let Some((_, distance)) = swap {
-                        pedestrian.track = ObservedTrack::beginning(time, position);
-                        Some((row.time, *distance, MisfitTreatment::BegunAnew))
-                    } else {
-                        pedestrian.track.push(row, tick_time, &known, &mut self.noise)
+                    let exchange = exchanges.iter().find(|(exchange, _)| exchange.id == id);
+                    let misfit = match exchange.cloned() {
+                        Some((exchange, track)) => {
+                            pedestrian.track.exchange(track, exchange, row, tick_time, &known, &mut self.noise)
+                        }
+                        None => pedestrian.track.push(row, tick_time, &known, &mut self.noise),
                     };
                     pedestrian.track.forget_before(time, self.clock.frame_step() as f64);
                     self.misfits.extend(misfit.map(|(time, distance, treatment)| Misfit {
@@ -321,14 +322,15 @@ impl LiveTracks {
         Ok(self.window())
     }
 
-    /// Those of these pedestrians who have exchanged their ids, with the distances from where they were expected (m).
-    fn exchanged(&self, time: f64, positions: &[(PedestrianId, Position)]) -> Vec<(PedestrianId, f64)> {
+    /// Those of these pedestrians who exchanged their ids, or may have, with the track that each goes on from.
+    fn exchanges(&self, time: f64, positions: &[(PedestrianId, Position)]) -> Vec<(Exchange, ObservedTrack)> {
+        let track = |id: &PedestrianId| Some(&self.pedestrians.get(id)?.track);
         let rows = positions.iter().filter_map(|&(id, position)| {
-            let track = &self.pedestrians.get(&id)?.track;
-            let expected = track.expectation(time, self.tick_time(), &self.noise)?;
+            let expected = track(&id)?.expectation(time, self.tick_time(), &self.noise)?;
             Some((id, position, expected))
         });
-        observe::exchanged(rows)
+        let exchanges = observe::exchanges(rows).into_iter();
+        exchanges.filter_map(|exchange| Some((exchange, track(&exchange.from)?.clone()))).collect()
     }
 
     /// Memory is bounded, also if every row has another pedestrian.

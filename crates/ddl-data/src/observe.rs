@@ -9,7 +9,7 @@ mod noise;
 mod track;
 
 pub(crate) use estimate::{ON_STEP, ObservedPositions};
-pub(crate) use exchange::exchanged;
+pub(crate) use exchange::{Exchange, exchanges};
 pub use misfit::{Misfit, MisfitTreatment};
 pub use noise::RecordingNoise;
 pub(crate) use track::{LONGEST_GAP, ObservedTrack, TimedPosition};

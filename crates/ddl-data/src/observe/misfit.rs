@@ -23,24 +23,37 @@ pub enum MisfitTreatment {
     LeftOut,
     /// The track begins anew, as of another pedestrian.
     BegunAnew,
+    /// It goes on from the track of another, who exchanged its id with this pedestrian.
+    Exchanged,
 }
 
 impl Misfit {
     /// A sentence about these rows, `None` without any; `place` names a row.
     pub fn words(misfits: &[Self], place: impl Fn(&Self) -> String) -> Option<String> {
         let first = misfits.first()?;
-        let jumps = misfits.iter().filter(|misfit| misfit.treatment == MisfitTreatment::BegunAnew).count();
-        let left_out = match misfits.len() - jumps {
+        let told = |treatment, one: &str, many: &str| match misfits
+            .iter()
+            .filter(|misfit| misfit.treatment == treatment)
+            .count()
+        {
             0 => None,
-            1 => Some("1 position is left out as implausible".to_owned()),
-            count => Some(format!("{count} positions are left out as implausible")),
+            1 => Some(format!("1 {one}")),
+            count => Some(format!("{count} {many}")),
         };
-        let begun_anew = match jumps {
-            0 => None,
-            1 => Some("1 track begins anew after a jump".to_owned()),
-            count => Some(format!("{count} tracks begin anew after a jump")),
-        };
-        let counts: Vec<String> = left_out.into_iter().chain(begun_anew).collect();
+        let treatments = [
+            told(
+                MisfitTreatment::LeftOut,
+                "position is left out as implausible",
+                "positions are left out as implausible",
+            ),
+            told(MisfitTreatment::BegunAnew, "track begins anew after a jump", "tracks begin anew after a jump"),
+            told(
+                MisfitTreatment::Exchanged,
+                "pedestrian goes on under the id of another",
+                "pedestrians go on under exchanged ids",
+            ),
+        ];
+        let counts: Vec<String> = treatments.into_iter().flatten().collect();
         Some(format!(
             "{}: first {}, {:.1} m from where it was expected",
             counts.join(", and "),

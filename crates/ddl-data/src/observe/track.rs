@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use ddl_core::{OBSERVED, Position, between, distance as distance_between};
 
 use crate::observe::doubt::{Doubt, Fit, WRONG};
+use crate::observe::exchange::Exchange;
 use crate::observe::misfit::MisfitTreatment;
 use crate::observe::motion::MotionState;
 use crate::observe::noise::{NoiseLevel, RecordingNoise, TrackNoise, log_likelihood};
@@ -87,8 +88,8 @@ struct Suspect {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Expectation {
     pub(crate) position: Position,
-    /// How far from there it may be (m).
-    pub(crate) reach: f64,
+    /// Standard deviation of a coordinate of a row there (m).
+    pub(crate) deviation: f64,
 }
 
 impl ObservedTrack {
@@ -190,15 +191,34 @@ impl ObservedTrack {
         self.doubt.as_ref().map(|doubt| (&doubt.other, doubt.weight, doubt.is_likelier()))
     }
 
-    /// Where the pedestrian is expected at a time; `None` if too few rows show its speed, or the last is too old.
+    /// Where the pedestrian is expected at a time; `None` if the last row is too old.
     pub(crate) fn expectation(&self, time: f64, tick_time: f64, known: &RecordingNoise) -> Option<Expectation> {
         let seconds = (time - self.last_time()) * tick_time;
-        if self.rows.len() < SHOW_SPEED || seconds > LONGEST_DOUBT {
-            return None;
-        }
         let (expected, deviation) = self.expected_after(seconds, known);
-        let reach = ACCELERATION * seconds * seconds + DEVIATIONS * deviation;
-        Some(Expectation { position: expected.position, reach })
+        (seconds <= LONGEST_DOUBT).then_some(Expectation { position: expected.position, deviation })
+    }
+
+    /// Adds the row of a pedestrian who exchanged its id with that of another track, or may have: as [`push`](Self::push).
+    pub(crate) fn exchange(
+        &mut self,
+        mut other: Self,
+        Exchange { distance, evidence, .. }: Exchange,
+        row: TimedPosition,
+        tick_time: f64,
+        known: &RecordingNoise,
+        recording: &mut RecordingNoise,
+    ) -> Option<(f64, f64, MisfitTreatment)> {
+        let treatment = MisfitTreatment::Exchanged;
+        other.doubt = None;
+        if evidence > 0.0 {
+            *self = other;
+            self.push(row, tick_time, known, recording);
+            return Some((row.time, distance, treatment));
+        }
+        other.accept(row, tick_time, known, &mut recording.clone());
+        let misfit = self.push(row, tick_time, known, recording);
+        self.doubt = Some(Box::new(Doubt { other, evidence, weight: 0.5, time: row.time, distance, treatment }));
+        misfit
     }
 
     /// The motion expected some seconds after the last row, and the standard deviation of a row from it (m).

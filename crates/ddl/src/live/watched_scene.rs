@@ -74,7 +74,7 @@ impl WatchedScene {
             // Rows that were left out are not stored. A track that begins anew is not joined to the one before. If only
             // the next row shows that a row is wrong, that row is stored already.
             let rows = pedestrians.into_iter().filter(|(id, _)| !tracks.has_left_out(*id));
-            let begun = tracks.misfits().iter().filter(|misfit| misfit.treatment == MisfitTreatment::BegunAnew);
+            let begun = tracks.misfits().iter().filter(|misfit| misfit.treatment != MisfitTreatment::LeftOut);
             let begun: Vec<PedestrianId> = begun.map(|misfit| misfit.pedestrian).collect();
             let window = answered.as_ref().map(|(window, _)| window);
             place.observe(tracks.last_frame().unwrap_or(frame), rows, &begun, window)?;

@@ -18,6 +18,7 @@ pub(super) struct LeftOut {
     dropped: Seldom,
     doubtful: Seldom,
     begun_anew: Seldom,
+    exchanged: Seldom,
     /// Whether the warning about units has been given.
     is_unit_doubted: bool,
     is_few_told: bool,
@@ -76,14 +77,14 @@ impl LeftOut {
     pub(super) fn doubtful(&mut self, rows: usize, scene: Option<&SceneName>, misfits: &[MisfitNote]) {
         self.rows += rows;
         self.frames += 1;
-        for treatment in [MisfitTreatment::LeftOut, MisfitTreatment::BegunAnew] {
+        for treatment in [MisfitTreatment::LeftOut, MisfitTreatment::BegunAnew, MisfitTreatment::Exchanged] {
             let some = misfits.iter().filter(|noted| noted.misfit.treatment == treatment).cloned();
             let (some, scene): (Vec<MisfitNote>, _) = (some.collect(), scene.cloned());
             let rows = some.len();
             let doubt = (rows > 0).then(|| Note::Misfits { scene, misfits: some }.to_string());
             self.of_treatment(treatment).tell(rows, doubt);
         }
-        let doubtful = self.doubtful.count + self.begun_anew.count;
+        let doubtful = self.doubtful.count + self.begun_anew.count + self.exchanged.count;
         let are_most = self.rows >= MANY_ROWS && 2 * doubtful > self.rows as u64;
         if are_most && !std::mem::replace(&mut self.is_unit_doubted, true) {
             tell(format_args!(
@@ -97,6 +98,7 @@ impl LeftOut {
         match treatment {
             MisfitTreatment::LeftOut => &mut self.doubtful,
             MisfitTreatment::BegunAnew => &mut self.begun_anew,
+            MisfitTreatment::Exchanged => &mut self.exchanged,
         }
     }
 
