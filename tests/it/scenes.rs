@@ -195,40 +195,6 @@ fn plans_are_doubted_and_the_risk_still_comes() {
     let (late, told) = risks(&place, &format!("{good}60,3,-1,5\n"));
     assert!(late == of_good && told.contains("the plan has the radius 5 m in row 3"), "{told}");
     for (plan, words) in [
-        ("t,x,y\n0,900,100\n4.8,300,-9900\n", "are its positions in centimetres?"),
-        ("t,x,y\n0,9,1\n400,8.5,1\n800,8,1\n", "are its times milliseconds?"),
-        ("t,x,y\n0,409,1\n4.8,405,1\n", "or more from everybody;"),
-        ("t,x,y\n0,45,40\n", ""),
-    ] {
-        let (risk, told) = risks(&place, plan);
-        let lines = told.lines().filter(|line| line.starts_with("warning: the plan ") && line.contains(words)).count();
-        assert_eq!((risk.len(), lines), (1, usize::from(!words.is_empty())), "{plan}: {told}");
-    }
-    // The pedestrian who follows the plan is told of too, by risk and forecast alike.
-    for command in ["risk tracks.csv", "forecast tracks.csv --joint"] {
-        let told = |ego: &str| place.run(&format!("{command} --fps 2.5 --last --plan robot.csv --ego {ego}")).stderr;
-        assert!(told("3").contains("the plan starts 2.5 m from the pedestrian who follows it"), "{}", told("3"));
-        assert!(told("77").contains("pedestrian 77, who is said to follow the plan, is not there"));
-    }
-}
-
-/// The risk of each plan of a file, and what is told.
-fn risks(place: &Place, plan: &str) -> (Vec<String>, String) {
-    place.write("doubtful.csv", plan);
-    let told = place.run("risk tracks.csv --fps 2.5 --last --plan doubtful.csv");
-    assert_eq!(told.code, Some(0), "{told:?}");
-    (told.stdout.lines().skip(1).map(|line| line.split(',').nth(3).unwrap().to_owned()).collect(), told.stderr)
-}
-
-#[test]
-fn plans_are_doubted_and_the_risk_still_comes() {
-    let place = place();
-    let good = "t,x,y,radius\n0,9,1,0.3\n4.8,3,-1,0.3\n";
-    let (of_good, told) = risks(&place, good);
-    assert!(!told.contains("plan"), "{told}");
-    let (late, told) = risks(&place, &format!("{good}60,3,-1,5\n"));
-    assert!(late == of_good && told.contains("the plan has the radius 5 m in row 3"), "{told}");
-    for (plan, words) in [
         ("t,x,y\n0,900,100\n4.8,300,-100\n", "are its positions in centimetres?"),
         ("t,x,y\n0,9,1\n400,8.5,1\n800,8,1\n", "are its times milliseconds?"),
         ("t,x,y\n0,409,1\n4.8,405,1\n", "or more from everybody;"),
