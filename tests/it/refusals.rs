@@ -6,7 +6,7 @@ use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model, folder_contents, own_tracks};
 
 /// Small files of the folder, as they are in it.
-const FILES: [(&str, &str); 20] = [
+const FILES: [(&str, &str); 21] = [
     ("capitals/A.CSV", "frame,id,x,y\n"),
     ("bag/metadata.yaml", "rosbag2_bagfile_information:\n"),
     ("star/zara01.csv", ""),
