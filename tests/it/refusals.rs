@@ -6,8 +6,9 @@ use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model, folder_contents, own_tracks};
 
 /// Small files of the folder, as they are in it.
-const FILES: [(&str, &str); 20] = [
+const FILES: [(&str, &str); 21] = [
     ("capitals/A.CSV", "frame,id,x,y\n"),
+    ("bag/metadata.yaml", "rosbag2_bagfile_information:\n"),
     ("star/zara01.csv", ""),
     ("H.txt", "1 0 0\n0 1 0\n0 0 1\n"),
     ("results/report.json", "{}"),

@@ -224,8 +224,8 @@ struct ddl_forecast *ddl_forecast_new(void);
 void ddl_forecast_free(struct ddl_forecast*);
 
 // Forecasts `count` pedestrians whose last 8 positions are known: `past` is `[count][8]`, 0.4 s apart, the present
-// last. They have the ids 0, 1, 2 and so on. Positions are checked as those of a stream: see the misfits. `request` may
-// be null.
+// last. They have the ids 0, 1, 2 and so on. Positions are checked as those of a stream: who is where nobody can be is
+// not forecast (see ids and misfits), and without anybody else that is an error. `request` may be null.
 enum ddl_status ddl_model_forecast(const struct ddl_model *model,
                                    const struct ddl_point *past,
                                    size_t count,

@@ -12,7 +12,7 @@ use crate::layout::{
 };
 use crate::live::LivePlace;
 use crate::model::LoadedModel;
-use ddl::data::{Completeness, OBSERVED, PedestrianId, Position};
+use ddl::data::{Completeness, Misfit, OBSERVED, PedestrianId, Position};
 use ddl::scene::{Plan, PlanPoint};
 use ddl::{GivenPlan, Note, ObservedPast, Request};
 use std::ffi::c_char;
@@ -78,8 +78,8 @@ pub extern "C" fn ddl_forecast_new() -> Box<ddl_forecast> {
 pub extern "C" fn ddl_forecast_free(_: Option<Box<ddl_forecast>>) {}
 
 /// Forecasts `count` pedestrians whose last 8 positions are known: `past` is `[count][8]`, 0.4 s apart, the present
-/// last. They have the ids 0, 1, 2 and so on. Positions are checked as those of a stream: see the misfits. `request` may
-/// be null.
+/// last. They have the ids 0, 1, 2 and so on. Positions are checked as those of a stream: who is where nobody can be is
+/// not forecast (see ids and misfits), and without anybody else that is an error. `request` may be null.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn ddl_model_forecast(
     model: Option<&ddl_model>,
@@ -104,18 +104,19 @@ pub unsafe extern "C" fn ddl_model_forecast(
             }
         }
         let observed = ObservedPast::of_tracks(&tracks, count, Completeness::Partial).map_err(CallFailure::invalid)?;
+        let place = |misfit: &Misfit| format!("pedestrian {}, position {}", misfit.pedestrian, misfit.tick);
+        let words = || Misfit::words(&observed.misfits, place).unwrap_or_default();
+        let nobody = || CallFailure::invalid(format!("no pedestrian can be forecast: {}", words()));
+        let window = observed.window.ok_or_else(nobody)?;
         if let Some(GivenPlan { ego: Some(ego), .. }) = request.plan()
-            && !(observed.window.as_ref()).is_some_and(|window| window.named(ego).is_some())
+            && window.named(ego).is_none()
         {
             return Err(CallFailure::invalid(format!("ego is {ego}, but no such pedestrian is forecast")));
         }
-        let mut notes = LiveNotes { misfits: observed.misfits, ..LiveNotes::default() };
-        let held = observed.window.map(|window| {
-            let answer = model.forecast(&window, &request)?;
-            notes.warning = warning_of(&Note::of_given(request.plan(), &window, &answer));
-            Ok(Held { window, answer, threads: Arc::clone(&model.threads) })
-        });
-        forecast.0.hold(held.transpose()?, &notes);
+        let answer = model.forecast(&window, &request)?;
+        let warning = warning_of(&Note::of_given(request.plan(), &window, &answer));
+        let notes = LiveNotes { misfits: observed.misfits, warning, ..LiveNotes::default() };
+        forecast.0.hold(Some(Held { window, answer, threads: Arc::clone(&model.threads) }), &notes);
         Ok(())
     })
 }

@@ -138,13 +138,15 @@ void wrong_input_is_told(const ddl::Model& model) {
     for (std::size_t t = 0; t < 8; ++t) fast[t].x = 4e5 * static_cast<double>(t);
     ddl::forecast(model, fast, forecast);
     REQUIRE(forecast.view().pedestrians == 1 && forecast.view().ids[0] == 1 && forecast.view().misfit_count > 0);
+    for (std::size_t t = 8; t < 16; ++t) fast[t].x = fast[t - 8].x;
+    REQUIRE(has(error_of([&] { ddl::forecast(model, fast, forecast); }), "no pedestrian can be forecast: "));
     auto aside = meeting();
     aside[3].x += 30.0;
     ddl::forecast(model, aside, forecast);
     REQUIRE(forecast.view().pedestrians == 2 && forecast.view().misfit_count == 1);
     REQUIRE(forecast.view().misfits[0].id == 0 && forecast.view().warning == nullptr);
     // Plans in centimetres, and a radius that no forecast sees.
-    const ddl::Plan centimetres = {{0.0, {0.0, 0.0}, 0.3}, {4.8, {20000.0, 0.0}, 0.3}};
+    const ddl::Plan centimetres = {{0.0, {0.0, 0.0}, 0.3}, {4.8, {200.0, 0.0}, 0.3}};
     ddl::forecast(model, meeting(), forecast, ddl::joint(centimetres));
     REQUIRE(has(forecast.view().warning, "centimetres"));
     ddl::forecast(model, meeting(), forecast, ddl::joint());

@@ -148,7 +148,9 @@ fn lost(output: &Path, NamedPath { path: input, purpose, .. }: &NamedPath) -> Op
             // Recordings also lie in folders of folders.
             let extension = there.extension().and_then(std::ffi::OsStr::to_str);
             let mut kinds = EXTENSIONS.iter().chain(&["memory", "db3"]);
-            extension.is_some_and(|it| kinds.any(|kind| it.eq_ignore_ascii_case(kind)))
+            // That of a rosbag2 recording names its files.
+            let is_bag = there.ends_with("metadata.yaml");
+            is_bag || extension.is_some_and(|it| kinds.any(|kind| it.eq_ignore_ascii_case(kind)))
         };
         there == here || (is_read && there.starts_with(&here)) || is_same_file(output, input)
     } else {

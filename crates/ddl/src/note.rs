@@ -203,12 +203,7 @@ impl Display for Note {
                 "pedestrian {name}, who is said to follow the plan, is not there: it is taken to be that of somebody \
                  who is not in the tracks"
             ),
-            Self::OutsideArea { count, of, first } => write!(
-                to,
-                "the grids leave out {count} of {of} pedestrians, first {first}: they are too far from the others for \
-                 one area of cells; give the area ({})",
-                Setting::Area
-            ),
+            Self::OutsideArea { count, of, first } => outside_area([*count, *of], first, to),
             Self::MemoryRefused { path, refusal } => write!(
                 to,
                 "{}: {refusal}; the file stays as it is, and what is seen now is not kept in it: give another file for \
@@ -230,6 +225,15 @@ fn misfit(scene: Option<&SceneName>, misfits: &[MisfitNote], to: &mut Formatter<
     let scene = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
     let first = misfits.first().map(|first| format!("pedestrian {}{scene} at {}", first.pedestrian, first.when));
     to.write_str(&Misfit::words(&rows, |_| first.clone().unwrap_or_default()).unwrap_or_default())
+}
+
+fn outside_area([count, of]: [usize; 2], first: &PedestrianName, to: &mut Formatter<'_>) -> Result {
+    write!(
+        to,
+        "the grids leave out {count} of {of} pedestrians, first {first}: they are too far from the others for one area \
+         of cells; give the area ({})",
+        Setting::Area
+    )
 }
 
 fn implausible(warning: &PlausibilityWarning, to: &mut Formatter<'_>) -> Result {

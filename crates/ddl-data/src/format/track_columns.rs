@@ -213,7 +213,7 @@ impl TrackColumns {
         let is_float = name.ends_with(",0") || name.ends_with(",00");
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
-            field::integer(&number, "pedestrian").map(|number| PedestrianName::Number(number))
+            field::integer(&number, "pedestrian").map(PedestrianName::Number)
         } else {
             field::pedestrian(if is_float { &number } else { name }, "pedestrian")
         };

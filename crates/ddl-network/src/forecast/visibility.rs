@@ -26,9 +26,10 @@ pub fn visibility(windows: &[&Window], steps: usize, half_box: f64) -> Scenes {
             let others = places.within_box(position, half_box).filter(|&j| j != i);
             seen.extend(others.map(|j| j as u32));
             if seen.len() > MOST_SEEN {
-                let apart = |j: u32| distance(positions[j as usize], position);
-                seen.select_nth_unstable_by(MOST_SEEN, |&a, &b| apart(a).total_cmp(&apart(b)).then(a.cmp(&b)));
-                seen.truncate(MOST_SEEN);
+                let mut near: Vec<_> = seen.iter().map(|&j| (distance(positions[j as usize], position), j)).collect();
+                near.select_nth_unstable_by(MOST_SEEN, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                seen.clear();
+                seen.extend(near[..MOST_SEEN].iter().map(|(_, j)| j));
             }
             seen.push(i as u32);
             seen.sort_unstable();

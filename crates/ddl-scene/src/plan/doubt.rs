@@ -104,7 +104,7 @@ impl Plan {
         let from_ego = |start: Position| ego.map_or(0.0, |ego| distance(start, people[ego]));
         let [apart, apart_if_exchanged] = [start, [start[1], start[0]]].map(from_ego);
         let mut later = self.points.iter().filter(|point| point.time > 0.0);
-        let moved = later.clone().find(|point| point.position != start);
+        let moved = later.clone().find(|point| distance(start, point.position) > 0.0);
         let slow = moved.filter(|moved| distance(start, moved.position) < SLOWEST * moved.time);
         let slow = slow.filter(|_| later.all(|point| point.time > LAST));
         let most = self.largest_radius();
