@@ -218,6 +218,9 @@ proptest! {
                 continue; // the common windows may be due at other moments
             };
             let i = other.pedestrians().iter().position(|id| id.0 == 1).unwrap();
+            if window.other(0).is_some() || other.other(i).is_some() {
+                continue;
+            }
             let pairs = window.observed(0).iter().zip(other.observed(i)).skip(window.quality(0).unseen);
             let off = pairs.map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max);
             prop_assert!(off < 0.1, "{off}");
@@ -268,21 +271,26 @@ proptest! {
         }
     }
 
-    /// Rows at the steps, with or without others between them, pass to the bit, and nothing was estimated.
+    /// Rows at the steps, with or without others between them, pass to the bit, and nothing was estimated, unless a row
+    /// is doubtful: then by one of the two explanations.
     #[test]
     fn rows_at_the_steps_pass_unchanged(frames in prop::sample::select(vec![1, 2, 4, 5, 10]), seed in any::<u64>()) {
         let pace = RowTimes::Rate(2.5 * f64::from(frames));
         let recording = recording(pace.clock(), film(pace, seed, 0.0, 0.0));
-        let windows = recording.observed_windows();
-        prop_assert!(windows.len() > 5);
-        for window in windows {
+        let observed = recording.observe(recording.live_tracks());
+        prop_assert!(observed.windows.len() > 5);
+        for window in observed.windows {
+            let is_told = |id: PedestrianId| observed.misfits.iter().any(|misfit| misfit.pedestrian == id);
             let now = recording.at(window.frames()[OBSERVED - 1]);
             let here = |id: &PedestrianId| now.iter().any(|row| row.pedestrian == *id);
-            for (i, &id) in window.pedestrians().iter().enumerate().filter(|(_, id)| here(id)) {
-                prop_assert_eq!(window.quality(i), ObservationQuality::default());
-                for (&frame, position) in window.frames().iter().zip(window.observed(i)) {
-                    prop_assert!(recording.at(frame).contains(&Observation::new(frame, id, *position)));
-                }
+            let explanations = window.explanations();
+            for (i, &id) in window.pedestrians().iter().enumerate().filter(|(_, id)| here(id) && !is_told(**id)) {
+                let are_rows = |window: &Window| {
+                    let mut places = window.frames().iter().zip(window.observed(i));
+                    window.quality(i) == ObservationQuality::default()
+                        && places.all(|(&frame, &at)| recording.at(frame).contains(&Observation::new(frame, id, at)))
+                };
+                prop_assert!(explanations.iter().any(are_rows));
             }
         }
     }
@@ -434,7 +442,7 @@ fn exact_recordings_are_observed_as_they_are() {
     datasets.extend(recordings::load(Convention::Star));
     for recording in datasets.iter().flat_map(Dataset::recordings) {
         let told = recording.observe(recording.live_tracks()).misfits.len();
-        assert!(told <= recording.observations().len() / 2_000, "{}: {told} told", recording.name());
+        assert!(told <= recording.observations().len() / 500, "{}: {told} told", recording.name());
         let complete = recording.windows(WindowRule::Complete);
         let observed = recording.windows(WindowRule::Observed);
         if told > 0 {
@@ -449,5 +457,50 @@ fn exact_recordings_are_observed_as_they_are() {
             assert_eq!(observed.with_bystanders(None), complete);
         }
         assert!(bystanders > 0);
+    }
+}
+
+/// Somebody who stands or walks, seen off its place once: until the next row both explanations count, then the row is
+/// left out. Steps that people make are facts.
+#[test]
+fn a_doubtful_row_has_two_explanations_until_the_next() {
+    for rate in [2.5, 5.0, 10.0, 25.0, 30.0] {
+        for (speed, off) in [(0.0, 0.2), (0.0, 0.5), (1.2, 0.2), (1.2, 0.5)] {
+            let wrong = (4.0 * rate) as i64;
+            let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(1.0 / rate).unwrap())
+                .with_completeness(Completeness::Partial);
+            for frame in 0..=wrong + 1 {
+                let place = [speed * frame as f64 / rate, if frame == wrong { off } else { 0.0 }];
+                let window = tracks.push(frame, [(PedestrianId(1), place)]).unwrap();
+                let Some(window) = window else { continue };
+                let other = window.other(0);
+                assert_eq!(other.is_some(), frame == wrong, "{rate} {speed} {off}: {frame} of {wrong}");
+                let Some(other) = other else { continue };
+                let [row, expected] = [window.observed(0)[OBSERVED - 1], other.positions[OBSERVED - 1]];
+                let (row, expected, weight) = match window.quality(0).age {
+                    0.0 => (row, expected, other.weight),
+                    _ => (expected, row, 1.0 - other.weight),
+                };
+                assert_eq!(row, place);
+                assert!(distance(expected, [place[0], 0.0]) < 0.02, "{rate} {speed} {off}: {expected:?}");
+                // From 10 m/s² on the row is worth nearly nothing.
+                let least = if off * rate * rate > 15.0 { 0.94 } else { 0.7 };
+                assert!((least..0.96).contains(&weight), "{rate} {speed} {off}: {weight}");
+                assert!(window.quality(0).uncertainty() > 0.1);
+            }
+            let told = tracks.misfits();
+            assert!(
+                matches!(told, [Misfit { treatment: MisfitTreatment::LeftOut, .. }]),
+                "{rate} {speed} {off}: {told:?}"
+            );
+        }
+        // A start at 1 m/s².
+        let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(1.0 / rate).unwrap());
+        for frame in 0..(8.0 * rate) as i64 {
+            let time = (frame as f64 / rate - 5.0).max(0.0);
+            let way = if time < 1.4 { 0.5 * time * time } else { 0.98 + 1.4 * (time - 1.4) };
+            tracks.push(frame, [(PedestrianId(1), [way, 0.0])]).unwrap();
+            assert_eq!(tracks.misfits(), []);
+        }
     }
 }

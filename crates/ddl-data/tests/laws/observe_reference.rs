@@ -19,19 +19,21 @@ struct Film {
     /// Frame, pedestrian, x and y.
     rows: Vec<(i64, i64, f64, f64)>,
     /// The tick of each, and of each pedestrian its number, the sums of x and of y (the first position once, the
-    /// second twice and so on), and its quality: unseen, age, deviation and velocity deviation.
-    windows: Vec<(i64, Vec<[f64; 7]>)>,
+    /// second twice and so on), its quality: unseen, age, deviation and velocity deviation, and the weight of the
+    /// other explanation.
+    windows: Vec<(i64, Vec<[f64; 8]>)>,
     misfits: Vec<(i64, i64, f64, u8)>,
     noise: f64,
 }
 
-fn of_window(window: &Window) -> Vec<[f64; 7]> {
+fn of_window(window: &Window) -> Vec<[f64; 8]> {
     let of_pedestrian = |i: usize| {
         let times = |axis: usize| (1..).zip(window.observed(i)).map(move |(k, at)| f64::from(k) * at[axis]);
         let quality = window.quality(i);
         let [x, y] = [0, 1].map(|axis| times(axis).sum());
+        let weight = window.other(i).map_or(0.0, |other| other.weight);
         let (id, unseen) = (window.pedestrians()[i].0 as f64, quality.unseen as f64);
-        [id, x, y, unseen, quality.age, quality.deviation, quality.velocity_deviation]
+        [id, x, y, unseen, quality.age, quality.deviation, quality.velocity_deviation, weight]
     };
     (0..window.len()).map(of_pedestrian).collect()
 }
@@ -61,11 +63,16 @@ fn films_are_observed_as_by_another_program() {
             let seen = all.iter().find(|seen| seen.frames() == &window.frames()[..OBSERVED]).unwrap();
             for (i, id) in window.pedestrians().iter().enumerate() {
                 let j = seen.pedestrians().iter().position(|other| other == id).unwrap();
-                assert_eq!((window.quality(i), window.observed(i)), (seen.quality(j), seen.observed(j)));
+                let rows = seen.explanations();
+                assert!(
+                    rows.iter()
+                        .any(|rows| (rows.quality(j), rows.observed(j)) == (window.quality(i), window.observed(i)))
+                );
             }
         }
         for (misfit, &(tick, id, distance, treatment)) in observed.misfits.iter().zip(&film.misfits) {
-            let expected = [MisfitTreatment::LeftOut, MisfitTreatment::BegunAnew][usize::from(treatment)];
+            let expected = [MisfitTreatment::LeftOut, MisfitTreatment::BegunAnew, MisfitTreatment::Exchanged]
+                [usize::from(treatment)];
             let found = (misfit.tick, misfit.pedestrian.0, misfit.treatment);
             assert_eq!(found, (tick, id, expected), "film {number}");
             assert!((misfit.distance - distance).abs() < 1e-6, "{misfit:?} {distance}");

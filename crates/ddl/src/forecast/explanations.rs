@@ -96,3 +96,121 @@ fn thinned(goals: &[Position], weights: &[f64], count: usize) -> Vec<(usize, f64
     }
     kept
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::live::watched_scene::tests::model;
+    use crate::{Ddl, Request};
+    use ddl_core::{OBSERVED, OtherObservation, PedestrianId};
+    use ddl_data::{Clock, Completeness, LiveTracks};
+    use ddl_scene::{Plan, PlanPoint};
+    use proptest::prelude::*;
+    use rand::{RngExt as _, SeedableRng as _};
+    use rand_chacha::ChaCha8Rng;
+    use std::sync::LazyLock;
+
+    static MODEL: LazyLock<Ddl> = LazyLock::new(model);
+
+    /// The risk of a plan towards somebody, at a row and at the next, where the row is so far off.
+    fn risks(rate: f64, speed: f64, noise: f64, off: Position, seed: u64) -> [f64; 2] {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        // Twelve uniform numbers have the variance 1.
+        let mut normal = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+        let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(1.0 / rate).unwrap())
+            .with_completeness(Completeness::Partial);
+        let last = (4.0 * rate) as i64;
+        for frame in 0..last {
+            let place = [-speed * frame as f64 / rate + noise * normal(), noise * normal()];
+            tracks.push(frame, [(PedestrianId(1), place)]).unwrap();
+        }
+        [(last, off), (last + 1, [0.0; 2])].map(|(frame, [dx, dy])| {
+            let x = -speed * frame as f64 / rate;
+            let place = [x + dx + noise * normal(), dy + noise * normal()];
+            let window = tracks.push(frame, [(PedestrianId(1), place)]).unwrap().unwrap();
+            let point = |time: f64, x: f64| PlanPoint { time, position: [x, 0.0], radius: 0.0 };
+            let from = x - 2.0 - speed;
+            let plan = Plan::new(vec![point(0.0, from), point(4.8, from + 4.0)]).unwrap();
+            let answers = MODEL.forecast(&[window], &Request::joint()).unwrap();
+            answers[0].futures().unwrap().risks(&[plan], 0.5, None).unwrap()[0].total
+        })
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// One wrong row takes at most a third of the risk away, and the next row gives it back.
+        #[test]
+        fn one_wrong_row_leaves_two_thirds_of_the_risk(
+            rate in prop::sample::select(vec![2.5, 5.0, 10.0, 25.0, 30.0]),
+            speed in prop::sample::select(vec![0.0, 0.5, 1.2]),
+            noise in prop::sample::select(vec![0.0, 0.01]),
+            (off, angle) in (0.1..2.0_f64, 0.0..6.3_f64),
+            seed: u64,
+        ) {
+            let right = risks(rate, speed, noise, [0.0; 2], seed);
+            let wrong = risks(rate, speed, noise, [off * angle.cos(), off * angle.sin()], seed);
+            prop_assert!(wrong[0] > 0.63 * right[0] && wrong[1] > 0.8 * right[1], "{right:?} {wrong:?}");
+        }
+    }
+
+    /// With noise of 3 and 6 cm, over all directions.
+    #[test]
+    fn one_wrong_row_among_noisy_rows_leaves_two_thirds_of_the_risk_on_the_mean() {
+        for (rate, speed, noise) in [(2.5, 1.2, 0.03), (2.5, 0.0, 0.06), (10.0, 0.0, 0.03), (25.0, 1.2, 0.06)] {
+            for off in [0.2, 0.5, 1.0] {
+                let of_direction = |k: u64| {
+                    let (sin, cos) = (0.785 * k as f64).sin_cos();
+                    let right = risks(rate, speed, noise, [0.0; 2], k);
+                    let wrong = risks(rate, speed, noise, [off * cos, off * sin], k);
+                    [wrong[0] / right[0], wrong[1] / right[1]]
+                };
+                let shares: Vec<[f64; 2]> = (0..8).map(of_direction).collect();
+                let mean = [0, 1].map(|row| shares.iter().map(|share| share[row]).sum::<f64>() / 8.0);
+                assert!(mean[0] > 0.7 && mean[1] > 0.85, "{rate} {speed} {noise} {off}: {shares:?}");
+            }
+        }
+    }
+
+    /// Each explanation has its share of the hypotheses and its weight, and every path begins where its explanation
+    /// ends; certificates hold. Who has one explanation is forecast as alone.
+    #[test]
+    fn both_explanations_have_hypotheses_with_certificates() {
+        let track = |x: f64| (0..OBSERVED).map(|t| [x, 0.4 * t as f64]).collect::<Vec<Position>>();
+        let ids = vec![PedestrianId(1), PedestrianId(2)];
+        let plain = Window::new("yard", 0, 1, ids, vec![track(0.0), track(30.0)]).unwrap();
+        let mut positions = std::array::from_fn(|t| track(0.0)[t]);
+        positions[OBSERVED - 1][0] += 3.0;
+        let other = OtherObservation { positions, quality: Default::default(), weight: 0.75 };
+        let window = plain.clone().with_others(vec![(0, other)]);
+        let [likelier, elsewhere] = window.explanations();
+        let ask = |window: Window, request: &Request| MODEL.forecast(&[window], request).unwrap().remove(0);
+        let request = Request::default().with_certificates();
+        let answer = ask(window.clone(), &request);
+        assert_eq!(answer.first_violation(), None);
+        let (both, alone) = (answer.forecast(), ask(plain.clone(), &request).into_forecast());
+        assert_eq!(both.hypotheses(), alone.hypotheses());
+        for k in 0..alone.hypotheses() {
+            assert_eq!(both.hypothesis(1, k), alone.hypothesis(1, k));
+        }
+        let weight = |is_other: bool| -> f64 {
+            let of_other = |k: &usize| (both.hypothesis(0, *k)[0][0] > 1.5) == is_other;
+            (0..both.hypotheses()).filter(of_other).map(|k| both.weight(0, k)).sum()
+        };
+        assert!((weight(true) - 0.75).abs() < 1e-9 && (weight(false) - 0.25).abs() < 1e-9);
+        // One path is that of the likelier explanation; the spread is that of the heavier.
+        let one = |window: Window| ask(window, &Request::one()).into_forecast().hypothesis(0, 0).to_vec();
+        assert_eq!(one(window), one(likelier));
+        let heavier = ask(elsewhere, &request).into_forecast();
+        assert_eq!((both.scale(0, 5), both.scale(1, 5)), (heavier.scale(0, 5), alone.scale(1, 5)));
+    }
+
+    /// By hand: the middle one of three costs least, and goes to the nearer neighbour.
+    #[test]
+    fn the_cheapest_hypothesis_gives_its_weight_to_the_nearest() {
+        let goals = [[0.0, 0.0], [1.0, 0.0], [4.0, 0.0]];
+        assert_eq!(thinned(&goals, &[0.5, 0.2, 0.3], 2), [(0, 0.7), (2, 0.3)]);
+        assert_eq!(thinned(&goals, &[0.5, 0.2, 0.3], 0), []);
+        assert_eq!(thinned(&goals, &[0.5, 0.2, 0.3], 3).len(), 3);
+    }
+}

@@ -13,7 +13,9 @@ AGILITIES = [0.001, 0.005, 0.02, 0.08]
 NOISE = np.tile(NOISES, 4)
 AGILITY = np.repeat(AGILITIES, 12)
 UNUSUAL = 10 * np.log(NOISE / 0.02) ** 2 + np.log(AGILITY / 0.02) ** 2
-LEFT_OUT, BEGUN_ANEW = 0, 1
+LEFT_OUT, BEGUN_ANEW, EXCHANGED = 0, 1, 2
+# Log-likelihoods of a wrong row and of an exchange.
+WRONG, EXCHANGE = -3.0, -5.0
 
 
 def motion(seconds):
@@ -52,6 +54,11 @@ class Filter:
         return np.hypot(*self.mean[1])
 
 
+def likelihoods(off, variance):
+    """Student's t in two dimensions with 4 degrees of freedom, without its constant."""
+    return -3 * np.log(1 + off**2 / variance / 4) - np.log(variance)
+
+
 class RecordingNoise:
     def __init__(self):
         self.evidence, self.rows = np.zeros(48), 0.0
@@ -78,8 +85,7 @@ class TrackNoise:
         if self.rows > 3:
             variance = np.array([one.cov[0, 0] for one in expected]) + NOISE**2
             off = np.array([np.hypot(*(position - one.mean[0])) for one in expected])
-            # Student's t in two dimensions with 4 degrees of freedom, without its constant.
-            likelihood = -3 * np.log(1 + off**2 / variance / 4) - np.log(variance)
+            likelihood = likelihoods(off, variance)
             self.evidence += likelihood
             keep = 1 - 1 / 5000
             recording.rows = recording.rows * keep + 1
@@ -91,12 +97,33 @@ def apart(a, b):
     return float(np.hypot(*(np.asarray(a) - b)))
 
 
+def ramp(value, low, high):
+    return min(max((value - low) / (high - low), 0), 1)
+
+
+class Doubt:
+    """Another explanation of the last row of a track."""
+
+    def __init__(self, other, evidence, weight, told):
+        self.other, self.evidence, self.weight, self.told = other, evidence, weight, told
+
+
+class Fit:
+    """How far a row is from where its pedestrian may be."""
+
+    def doubt(self, seconds):
+        seldom = ramp(self.distance / self.deviation, 2, 4) * ramp(self.distance, 0.07, 0.14)
+        acceleration = (self.distance - 2 * self.deviation) / seconds**2
+        weight = seldom * (0.78 + 0.17 * ramp(acceleration, 5, 10))
+        return weight if weight >= 0.1 else None
+
+
 class Track:
     def __init__(self, time, position):
         self.rows = deque([(time, position)])
         self.noise = TrackNoise(position)
         self.fastest = (0.0, time)
-        self.turned = None
+        self.doubt = None
         self.suspects = []
 
     def last(self):
@@ -105,11 +132,17 @@ class Track:
     def expected(self, seconds, known):
         level = self.noise.level(known)
         expected = self.noise.filters[level].after(seconds)
-        return expected, 4 * math.sqrt(expected.cov[0, 0] + NOISE[level] ** 2)
+        return expected, math.sqrt(expected.cov[0, 0] + NOISE[level] ** 2)
+
+    def copied(self):
+        same = copy.copy(self)
+        same.rows, same.noise, same.suspects = deque(self.rows), self.noise.copied(), list(self.suspects)
+        return same
 
     def fit(self, time, position, tick, known):
         seconds = (time - self.last()) * tick
-        expected, margin = self.expected(seconds, known)
+        expected, deviation = self.expected(seconds, known)
+        margin = 4 * deviation
         distance = apart(position, expected.mean[0])
         own = max(self.fastest[0], expected.speed())
         turning, fastest, off = 12, 12, distance
@@ -119,7 +152,11 @@ class Track:
             off = min(off, apart(p1 + (p1 - p0) * (time - t1) / (t1 - t0), position))
         way = apart(position, self.rows[-1][1])
         near = off <= 0.5 + 1.5 * seconds**2 + margin
-        return distance, near and way <= 0.5 + fastest * seconds + margin, way <= turning * seconds + margin
+        fit = Fit()
+        fit.distance, fit.deviation, fit.likelihood = distance, deviation, likelihoods(off, deviation**2)
+        fit.is_expected = near and way <= 0.5 + fastest * seconds + margin
+        fit.is_turn = way <= turning * seconds + margin
+        return fit
 
     def goes_on(self, time, position, distance, tick, known):
         """Whether the row continues the doubtful row before it better than the track."""
@@ -133,21 +170,30 @@ class Track:
         if (time - self.last()) * tick > 2:
             self.__init__(time, position)
             return None
-        distance, is_expected, is_turn = self.fit(time, position, tick, known)
-        if (is_expected or is_turn) and not self.goes_on(time, position, distance, tick, known):
-            self.suspects = []
-            self.turned = None if is_expected else (self.noise.copied(), distance)
-            self.accept(time, position, tick, known, recording)
+        fit = self.fit(time, position, tick, known)
+        distance = fit.distance
+        fits = (fit.is_expected or fit.is_turn) and not self.goes_on(time, position, distance, tick, known)
+        doubt, self.doubt = self.doubt, None
+        if doubt:
+            # Which explanation of the two rows is the likeliest: the one before is wrong, this one is, or none.
+            other = doubt.other.fit(time, position, tick, known)
+            before = doubt.evidence + other.likelihood
+            right = max(fit.likelihood, WRONG) if fits else WRONG
+            if other.is_expected and before > right:
+                self.__dict__ = doubt.other.__dict__
+                self.take(time, position, other, tick, known, recording)
+                return doubt.told
+            weight = fit.doubt((time - self.last()) * tick)
+            if fits and before > WRONG and other.likelihood > fit.likelihood and weight:
+                doubt.other.accept(time, position, tick, known, RecordingNoise())
+                doubt.evidence, doubt.weight = before - right, max(doubt.weight, weight)
+                self.suspects = []
+                self.accept(time, position, tick, known, recording)
+                self.doubt = doubt
+                return None
+        if fits:
+            self.take(time, position, fit, tick, known, recording)
             return None
-        if self.turned:
-            (noise, off), self.turned = self.turned, None
-            without = copy.copy(self)
-            without.rows, without.noise, without.suspects = deque(self.rows), noise.copied(), list(self.suspects)
-            wrong, _ = without.rows.pop()
-            if without.fit(time, position, tick, known)[1]:
-                without.accept(time, position, tick, known, recording)
-                self.__dict__ = without.__dict__
-                return wrong, off, LEFT_OUT
         # Left out, or the beginning of another track?
         if self.suspects:
             at, seen, _ = self.suspects[-1]
@@ -163,6 +209,26 @@ class Track:
             self.accept(at, seen, tick, known, recording)
         return time, off, BEGUN_ANEW
 
+    def take(self, time, position, fit, tick, known, recording):
+        self.suspects = []
+        weight = fit.doubt((time - self.last()) * tick)
+        other = self.copied() if weight else None
+        self.accept(time, position, tick, known, recording)
+        if weight:
+            self.doubt = Doubt(other, WRONG - fit.likelihood, weight, (time, fit.distance, LEFT_OUT))
+
+    def exchange(self, other, evidence, off, time, position, tick, known, recording):
+        other.doubt = None
+        told = time, off, EXCHANGED
+        if evidence > 0:
+            self.__dict__ = other.__dict__
+            self.push(time, position, tick, known, recording)
+            return told
+        other.accept(time, position, tick, known, RecordingNoise())
+        misfit = self.push(time, position, tick, known, recording)
+        self.doubt = Doubt(other, evidence, 0.5, told)
+        return misfit
+
     def accept(self, time, position, tick, known, recording):
         self.noise.add(position, (time - self.last()) * tick, recording)
         if len(self.rows) > 1 and (self.rows[-1][0] - self.rows[-2][0]) * tick < 1 / 512:
@@ -175,6 +241,25 @@ class Track:
     def forget_before(self, time, step):
         while len(self.rows) > 1 and self.rows[1][0] <= time - 11 * step:
             self.rows.popleft()
+        if self.doubt:
+            self.doubt.other.forget_before(time, step)
+
+    def explained(self, time, step, tick, recording):
+        """The likelier observation, its quality, and the weight of the other one."""
+        likelier = self.observed(time, step, tick, recording)
+        other = self.doubt and self.doubt.other.observed(time, step, tick, recording)
+        if not likelier or not other:
+            return likelier and (*likelier, 0.0)
+        weight = self.doubt.weight
+        if self.doubt.evidence > 2.8:
+            likelier, other, weight = other, likelier, 1 - weight
+        places, quality = np.array(likelier[0]), np.array(likelier[1])
+        apart_by = places - np.array(other[0])
+        between = math.sqrt(weight * (1 - weight) / 2)
+        last, step_apart = apart_by[7], (apart_by[7] - apart_by[6]) / 0.4
+        quality[2] = np.hypot(quality[2], between * np.hypot(*last))
+        quality[3] = np.hypot(quality[3], between * np.hypot(*step_apart))
+        return places, quality, weight
 
     def interval(self):
         times = [time for time, _ in self.rows][-3:]
@@ -232,22 +317,28 @@ def smoothed(rows, times, tick, noise, agility):
 
 
 def exchanges(rows):
-    """Pairs of pedestrians, each of which is seen where the other one was expected."""
-    surprises = []
-    for who, position, (expected, reach) in rows:
-        off = apart(position, expected)
-        if off > reach:
-            surprises.append((who, position, expected, reach, off))
+    """Pedestrians in a cycle, each seen where the next one was expected: (who, whose place, distance, evidence)."""
+    surprised = [row for row in rows if apart(row[1], row[2][0]) > 2.5 * row[2][1]]
+
+    def likelihood(row, other):
+        return likelihoods(apart(row[1], other[2][0]), other[2][1] ** 2)
+
+    gains = [[likelihood(one, other) - likelihood(one, one) for other in surprised] for one in surprised]
+    best = {}
+    for one, gain in enumerate(gains):
+        other = max((k for k in range(len(gain)) if k != one), key=lambda k: gain[k], default=None)
+        if other is not None and gain[other] > 0:
+            best[one] = other
     found = {}
-    for one in range(len(surprises)):
-        a, at, to, reach, off = surprises[one]
-        for b, at_b, to_b, reach_b, off_b in surprises[one + 1 :]:
-            crossed = [apart(at, to_b), apart(at_b, to)]
-            there = crossed[0] <= 1.5 * reach_b and crossed[1] <= 1.5 * reach
-            if there and 4 * sum(crossed) < off + off_b:
-                for who, far in ((a, off), (b, off_b)):
-                    found.setdefault(who, far)
-                break
+    for start in range(len(surprised)):
+        cycle = [start]
+        while best.get(cycle[-1], start) not in cycle:
+            cycle.append(best[cycle[-1]])
+        evidence = EXCHANGE + sum(gains[one][best[one]] for one in cycle if one in best)
+        if best.get(cycle[-1]) == start == min(cycle) and evidence > -4:
+            for one in cycle:
+                who, position, (expected, _) = surprised[one]
+                found[who] = surprised[best[one]][0], evidence, apart(position, expected)
     return found
 
 
@@ -270,22 +361,23 @@ def observe(film):
         for who, position in rows:
             if who in tracks:
                 seconds = (time - tracks[who].last()) * tick
-                if len(tracks[who].rows) >= 3 and seconds <= 1:
-                    expected, margin = tracks[who].expected(seconds, known)
-                    expectations.append((who, position, (expected.mean[0], 1.5 * seconds**2 + margin)))
+                if seconds <= 1:
+                    expected, deviation = tracks[who].expected(seconds, known)
+                    expectations.append((who, position, (expected.mean[0], deviation)))
         exchanged = exchanges(expectations)
+        before = {whose: tracks[whose].copied() for whose, *_ in exchanged.values()}
         for who, position in rows:
             last_rows[who] = time
             if who not in tracks:
                 tracks[who] = Track(time, position)
                 continue
             if who in exchanged:
-                tracks[who] = Track(time, position)
-                misfits.append([time, who, exchanged[who], BEGUN_ANEW])
+                whose, *found = exchanged[who]
+                misfit = tracks[who].exchange(before[whose], *found, time, position, tick, known, noise)
             else:
                 misfit = tracks[who].push(time, position, tick, known, noise)
-                if misfit:
-                    misfits.append([misfit[0], who, *misfit[1:]])
+            if misfit:
+                misfits.append([misfit[0], who, *misfit[1:]])
             tracks[who].forget_before(time, step)
         tracks = {who: track for who, track in tracks.items() if (time - last_rows[who]) * tick <= 2}
         if sum(time - last_rows[who] < step for who in tracks) > 1:
@@ -304,8 +396,10 @@ def observe(film):
             age = time - track.last()
             oldest = max(track.interval(), step) if max_age is None else max_age
             if last_rows[who] == time or age < oldest:
-                places, quality = track.observed(time, step, tick, noise)
-                window.append([who, *(np.arange(1, 9) @ np.array(places)), *quality])
+                seen = track.explained(time, step, tick, noise)
+                if seen:
+                    places, quality, weight = seen
+                    window.append([who, *(np.arange(1, 9) @ np.array(places)), *quality, weight])
         if window:
             windows.append([time, window])
     best = int(np.argmax(noise.evidence - UNUSUAL))
