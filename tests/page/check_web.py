@@ -138,7 +138,6 @@ def check_errors(opened, folder):
     """A file that cannot be read shows the error of the program, and the next one is shown again."""
     files = {
         "word.csv": "frame,pedestrian,x,y\n0,1,0.0,left\n",
-        "nobody.csv": "frame,pedestrian,x,y\n0,1,0.0,1.0\n",
         "nothing.csv": "",
         "packed.csv": "PK\x03\x04",
         "picture.csv": "frame,pedestrian,x_px,y_px\n0,1,100,200\n1,1,110,200\n",

@@ -72,7 +72,7 @@ typedef struct ddl_request {
   const int64_t *ego;
 } ddl_request;
 
-// How a place is observed. All zero: times in seconds, pedestrians from the second row on, every frame, no memory.
+// How a place is observed. All zero: times in seconds, pedestrians from the first row on, every frame, no memory.
 typedef struct ddl_live_options {
   // Frames per second, if frames are numbered; 0 if they have times in seconds.
   double rate;

@@ -60,7 +60,7 @@ pub struct ddl_plan {
     pub count: usize,
 }
 
-/// How a place is observed. All zero: times in seconds, pedestrians from the second row on, every frame, no memory.
+/// How a place is observed. All zero: times in seconds, pedestrians from the first row on, every frame, no memory.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ddl_live_options<'a> {

@@ -22,7 +22,7 @@ pub(crate) struct TrackOptions {
     pub(crate) units: Units,
     /// Only pedestrians tracked for all 8 observed steps, 2.8 s from the first to the last
     ///
-    /// By default, pedestrians with 2 or more rows are forecast too. Their motion is continued backwards before the
+    /// By default, pedestrians are forecast from their first row on. Their motion is continued backwards before the
     /// first row; the column `unseen` counts such steps.
     #[arg(long)]
     whole: bool,

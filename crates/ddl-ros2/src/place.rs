@@ -139,7 +139,7 @@ mod tests {
                 },
             }
         });
-        let expected = "nobody waits ann@10800000 refused refused nobody ann@8600000";
+        let expected = "ann@10000000 waits ann@10800000 refused refused ann@8000000 ann@8600000";
         assert_eq!((&*said.join(" "), health.restarts, health.doubtful), (expected, 1, 0));
         assert!(place.forecast().unwrap().is_none());
     }

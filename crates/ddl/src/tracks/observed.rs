@@ -3,7 +3,7 @@
 use crate::note::{MisfitNote, Note};
 use crate::tracks::timed::many_frames;
 use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, Setting, TIME_STEP, Window};
-use ddl_data::{Clock, Completeness, FrameNumber, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording};
+use ddl_data::{Clock, Completeness, FrameNumber, LiveTracks, Misfit, PlausibilityWarning, Recording};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
