@@ -263,12 +263,12 @@ fn a_scene_that_falls_silent_blocks_no_other() {
     // The frame is complete only at the end of the input.
     let silent = [0, 10].map(|frame| as_csv("silent", &(frame, 1, 0.0, 0.0)));
     live.write(&("frame,scene,pedestrian,x,y\n".to_owned() + &silent.concat()));
+    let line = live.line();
+    assert!(line["scene"] == "silent" && line["observed_until"] == 0, "{line}");
     for frame in 0..6 {
         live.write(&(as_csv("hall", &(10 * frame, 1, 0.5 * frame as f64, 0.0)) + "\n"));
-        if frame > 0 {
-            let line = live.line();
-            assert!(line["scene"] == "hall" && line["observed_until"] == 10 * frame, "{line}");
-        }
+        let line = live.line();
+        assert!(line["scene"] == "hall" && line["observed_until"] == 10 * frame, "{line}");
     }
     let rest = json_lines::<Value>(&live.end().succeeds());
     assert_eq!(rest.len(), 1);

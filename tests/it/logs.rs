@@ -20,7 +20,7 @@ fn every_kind_of_log_and_its_copy_give_the_same_forecasts() {
     let place = place();
     let forecast = |name: &str| place.ok(&format!("forecast --model run {name}.mcap --one"));
     let expected = forecast(LOGS[0]);
-    assert_eq!(expected.lines().count(), 1 + 9 * 3 * 12);
+    assert_eq!(expected.lines().count(), 1 + 10 * 3 * 12);
     for name in LOGS {
         place.ok(&format!("forecast --model run {name}.mcap --one -o {name}-copy.mcap"));
         for log in [name.to_owned(), format!("{name}-copy")] {

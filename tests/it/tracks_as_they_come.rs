@@ -121,7 +121,7 @@ fn a_late_row_is_told_and_a_given_rate_takes_precedence() {
     let walk = own_tracks::csv(&own_tracks::three_pedestrians(10));
     place.write("late.csv", walk.clone() + "900,77,0,0\n");
     let _ = place
-        .run("forecast late.csv --frame-step 10 --last --one --threads 1")
+        .run("forecast late.csv --frame-step 10 --last --one --whole --threads 1")
         .says("there is no forecast for the last frame of the file (frame 900); the last one is at frame 90");
     place.write("fast.csv", "# fps: 1e12\n".to_owned() + &walk);
     let _ = place.ok("forecast fast.csv --frame-step 10 --last --one --threads 1");
@@ -143,7 +143,7 @@ fn carried_pedestrians_keep_their_words() {
     assert_eq!(place.run_on(&text, &format!("forecast - {options}")).succeeds(), file);
     let lines: Vec<Value> = json_lines(&file);
     let names: BTreeSet<&str> = lines.iter().filter_map(|line| line["pedestrian"].as_str()).collect();
-    assert_eq!((names, lines.len()), (BTreeSet::from(["anna", "bob"]), 22 + 21));
+    assert_eq!((names, lines.len()), (BTreeSet::from(["anna", "bob"]), 24 + 23));
     let _ = place.ok("view two.csv --no-open -o two.html");
     assert!(place.text("two.html").contains("\"when\":\"1.2 s\""));
 }
@@ -223,8 +223,8 @@ fn a_page_shows_the_moments_of_own_tracks() {
     let printed = place.ok("view lobby.csv --moments 5");
     assert_eq!(printed, "lobby-forecasts.html\n");
     let page = place.text("lobby-forecasts.html");
-    // From the second frame on some pedestrian can be forecast.
-    assert!(page.contains("5 of 14 moments of lobby.csv"));
+    // From the first frame on all pedestrians are forecast.
+    assert!(page.contains("5 of 15 moments of lobby.csv"));
     assert!(page.contains("Certificates: 300 of 300 hypotheses"));
     let data = page.split("id=\"moments-json\">").nth(1).unwrap();
     let moments: Vec<Value> = ddl_tests::place::json(data.split("</script>").next().unwrap());
@@ -233,7 +233,7 @@ fn a_page_shows_the_moments_of_own_tracks() {
     assert_eq!(moments[4]["frame"], 14 * own_tracks::FRAME_STEP);
     assert_eq!(moments[4]["when"], "frame 140");
     assert_eq!((count(4, "truth"), count(4, "paths")), (0, 20));
-    // The first of five is the third of fourteen: seen for 3 frames, with a known future.
+    // The first of five is the third of fifteen: seen for 3 frames, with a known future.
     assert_eq!(moments[0]["pedestrians"][0]["quality"]["unseen"], 5);
     assert_eq!(count(0, "truth"), 24);
 }

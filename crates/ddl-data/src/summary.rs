@@ -19,7 +19,7 @@ use crate::recording::Recording;
 ///
 /// let walk = (0..20).map(|t| Observation::new(10 * t, PedestrianId(1), [0.5 * t as f64, 2.0]));
 /// let summary = Recording::new("yard", 10, walk.collect())?.summary();
-/// assert_eq!((summary.pedestrians, summary.to_learn_from, summary.to_forecast), (1, 1, 19));
+/// assert_eq!((summary.pedestrians, summary.to_learn_from, summary.to_forecast), (1, 1, 20));
 /// assert_eq!((summary.seconds, summary.median_speed), (7.6, Some(1.25)));
 /// assert!(summary.warnings().is_empty());
 /// # Ok::<(), ddl_data::RecordingError>(())

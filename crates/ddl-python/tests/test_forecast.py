@@ -170,8 +170,7 @@ def test_live_has_the_bits_of_the_recording(forecaster, tracks, tmp_path):
 def test_live_refuses_wrong_frames_and_continues(forecaster):
     live = ddl.Live(forecaster, fps=2.5)
     for frame in range(7):
-        seen_often_enough = live.observe(frame, ["a", "b"], [[0.4 * frame, 0], [5, 0.4 * frame]]) is not None
-        assert seen_often_enough == (frame > 0)
+        assert live.observe(frame, ["a", "b"], [[0.4 * frame, 0], [5, 0.4 * frame]]) is not None
     with pytest.raises(ValueError, match="after"):
         live.observe(3, ["a"], [[0, 0]])
     with pytest.raises(ValueError, match="finite"):

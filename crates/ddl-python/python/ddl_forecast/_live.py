@@ -103,7 +103,7 @@ class Live:
 
         Returns
         -------
-        A forecast of all pedestrians observed now and often enough before; None without such pedestrians, or earlier
+        A forecast of all pedestrians observed now or a little before; None without such pedestrians, or earlier
         than ``every`` allows.
 
         Raises
