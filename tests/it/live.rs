@@ -188,8 +188,8 @@ fn implausible_input_is_reported_once() {
     let warning = "warning: most positions are too far from the ones before";
     assert_eq!(finished.stderr.matches(warning).count(), 1, "{finished:?}");
     let mut rows = own_tracks::three_pedestrians(20);
-    // From side to side, 2 m per step.
-    rows.extend((8..20).map(|t| (10 * t, 4, t as f64, 2.0 * (t % 2) as f64)));
+    // From side to side, 2 m per step, two steps to each side.
+    rows.extend((8..20_i64).map(|t| (10 * t, 4, t as f64, 2.0 * (t % 4 - 2).abs() as f64)));
     rows.sort_by_key(|row| (row.0, row.1));
     for options in ["", "--certificate --one"] {
         let line = format!("{line} --whole {options}");

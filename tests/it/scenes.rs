@@ -103,7 +103,7 @@ fn risk_is_that_of_the_printed_hypotheses() {
         })
         .collect();
     place.write_tracks("apart.csv", &rows);
-    place.write("plans.csv", "t,x,y,radius\n0,7,-4,0.3\n4.8,7.5,50,0.3\n");
+    place.write("plans.csv", "t,x,y,radius\n0,5.5,-20,0.3\n4.8,9.5,50,0.3\n");
     let ask = |command: &str| json_lines::<Value>(&place.ok(command));
     let numbers = |value: &Value| -> Vec<f64> { serde_json::from_value(value.clone()).unwrap() };
     let mut random = fastrand::Rng::with_seed(5);
@@ -126,7 +126,7 @@ fn risk_is_that_of_the_printed_hypotheses() {
                 let is_close = |part: &usize| {
                     let (step, share) = ((part - 1) / 64, ((part - 1) % 64 + 1) as f64 / 64.0);
                     let along = *part as f64 / 768.0;
-                    let plan = [7.0 + 0.5 * along, -4.0 + 54.0 * along];
+                    let plan = [5.5 + 4.0 * along, -20.0 + 70.0 * along];
                     let [x, y] =
                         [0, 1].map(|axis| at(step, axis) * (1.0 - share) + at(step + 1, axis) * share - plan[axis]);
                     x.hypot(y) - 0.3 <= 0.5
@@ -158,13 +158,15 @@ fn who_is_far_and_who_has_which_name_does_not_matter() {
         .flat_map(|t| (0..5).map(move |i| (t, 20 + i, 1000.0 + 0.3 * (t * i) as f64, 990.0 + 0.4 * t as f64)))
         .collect();
     let answers = |rows: &[Row]| {
-        place.write_tracks("crowd.csv", rows);
+        let mut rows = rows.to_vec();
+        rows.sort_by_key(|row| row.0);
+        place.write_tracks("crowd.csv", &rows);
         let risk = place.ok("risk crowd.csv --fps 2.5 --last --plan plans.csv --nearest");
         // Without the name of the pedestrian most at risk.
         let numbers = risk.lines().map(|line| line.split(',').enumerate().filter(|(column, _)| *column != 5));
         let numbers: Vec<Vec<String>> = numbers.map(|line| line.map(|(_, field)| field.to_owned()).collect()).collect();
         let grid = place.ok("occupancy crowd.csv --fps 2.5 --last --every 2.4 --cell 0.25 --area=-2,-3,14,3");
-        let streamed = place.run_on(&own_tracks::csv(rows), "risk - --fps 2.5 --plan plans.csv --nearest");
+        let streamed = place.run_on(&own_tracks::csv(&rows), "risk - --fps 2.5 --plan plans.csv --nearest");
         let streamed = streamed.succeeds().lines().map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(risk.lines().skip(1).collect::<Vec<_>>(), streamed[streamed.len() - 2..]);
         (numbers, grid)
@@ -229,7 +231,7 @@ fn somebody_far_away_costs_no_grid() {
         let cells =
             json_lines::<Value>(&finished.stdout).into_iter().map(|grid| grid["data"].as_array().unwrap().len());
         let cells: Vec<usize> = cells.collect();
-        assert!(cells.len() == 20 && cells.iter().all(|cells| *cells < 3000), "{cells:?}");
+        assert!(cells.len() == 20 && cells.iter().all(|cells| *cells < 6000), "{cells:?}");
     }
     assert_eq!(told.stderr.matches("the grids leave out 1 of 3 pedestrians, first 9: they are").count(), 1, "{told:?}");
     assert!(!alone.stderr.contains("leave out"));

@@ -49,6 +49,9 @@ impl Completeness {
 /// - A pedestrian whose last row is not [too old](Self::with_max_age) is carried on to the frame.
 /// - A position too far from the expected one is left out, and [reported](Self::misfits). If the next rows agree with
 ///   it, the track begins anew there, and also after 2 s without a row.
+/// - A position that people seldom reach has two explanations until the next row: the window holds the likelier one,
+///   and [the other](Window::other).
+/// - Pedestrians who exchange their ids go on under the new ones.
 /// - A pedestrian without a row for 2 s is forgotten.
 /// - An error changes nothing: the same frame can be pushed again, corrected.
 /// - After a frame far ahead, earlier frames are refused; [`clear`](Self::clear) starts again.

@@ -1,8 +1,8 @@
 //! Windows: what is refused, and what stays when pedestrians or positions change.
 
 use ddl_core::{
-    FRAME_LIMIT, OBSERVED, ObservationQuality, PedestrianId, Position, RememberedTrack, Window, WindowError, between,
-    bounds, distance, is_frame, is_frame_step,
+    FRAME_LIMIT, OBSERVED, ObservationQuality, OtherObservation, PedestrianId, Position, RememberedTrack, Window,
+    WindowError, between, bounds, distance, is_frame, is_frame_step,
 };
 
 fn ids(range: std::ops::Range<i64>) -> Vec<PedestrianId> {
@@ -129,6 +129,34 @@ fn what_was_measured_has_no_quality() {
     assert!((partial.uncertainty() - (0.09_f64 + 0.2304).sqrt()).abs() < 1e-12);
     let window = window.with_qualities(vec![measured, partial]);
     assert_eq!(window.filter_pedestrians(|i| i == 1).unwrap().quality(0), partial);
+}
+
+/// Likelier at (0, 0), with a weight of 0.2 at (3, 4): 5 m apart, of which sqrt(0.2 * 0.8 / 2) is the deviation.
+#[test]
+fn another_explanation_goes_with_its_pedestrian_and_adds_its_deviation() {
+    let window = Window::new("r", 0, 1, ids(0..3), vec![vec![[0.0; 2]; 8]; 3]).unwrap();
+    let mut positions = [[0.0; 2]; OBSERVED];
+    positions[OBSERVED - 1] = [3.0, 4.0];
+    let estimated = ObservationQuality { age: 0.1, ..ObservationQuality::default() };
+    let other = OtherObservation { positions, quality: estimated, weight: 0.2 };
+    let doubtful = window.clone().with_others(vec![(1, other)]);
+    let quality = doubtful.quality(1);
+    let expected = 5.0 * 0.08_f64.sqrt();
+    assert!((quality.deviation - expected).abs() < 1e-12 && quality.age == 0.0);
+    assert!((quality.velocity_deviation - expected / 0.4).abs() < 1e-12);
+    assert_eq!(
+        (doubtful.quality(0), doubtful.other(0), doubtful.other(1)),
+        (ObservationQuality::default(), None, Some(&other))
+    );
+    let alone = doubtful.filter_pedestrians(|i| i > 0).unwrap().without_future();
+    assert_eq!((alone.other(0), alone.other(1), alone.quality(0)), (Some(&other), None, quality));
+    let [likelier, elsewhere] = doubtful.explanations();
+    assert_eq!(likelier, window);
+    assert_eq!((elsewhere.observed(1), elsewhere.quality(1)), (&positions[..], estimated));
+    assert!(!elsewhere.has_others() && elsewhere.observed(2) == window.observed(2));
+    let moved = doubtful.map_positions(|_, _, [x, y]| [x + 1.0, y]);
+    assert!(moved.other(1).is_some_and(|other| distance(other.positions[OBSERVED - 1], [4.0, 4.0]) < 1e-12));
+    assert!(!doubtful.reversed().has_others());
 }
 
 #[test]

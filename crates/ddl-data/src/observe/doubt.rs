@@ -6,8 +6,8 @@ use crate::observe::track::ObservedTrack;
 /// A row so many standard deviations from where it was expected begins to be doubted, and is doubted as far as it can
 /// be. Of walking pedestrians a twentieth of the rows, 0.4 s apart, is beyond 3.3 (dut, citr, juelich, magni, thor).
 const UNUSUAL: [f64; 2] = [2.0, 4.0];
-/// The same in metres: nearer it changes no forecast.
-const NOTICED: [f64; 2] = [0.07, 0.14];
+/// The same in metres: nearer it changes forecasts little, and is never left out.
+const NOTICED: [f64; 2] = [0.07, 0.15];
 /// Accelerations (m/s²) that people seldom have, and that they never have: of 1,000 rows 0.1 to 0.4 s apart one needs 2
 /// to 11 (dut, citr, juelich).
 const INHUMAN: [f64; 2] = [5.0, 10.0];
@@ -42,6 +42,11 @@ impl Doubt {
     /// Whether the other explanation is the likelier one, before the next row.
     pub(super) fn is_likelier(&self) -> bool {
         self.evidence > LIKELIER
+    }
+
+    /// Whether it matters whether the row is a fact.
+    pub(super) fn is_noticed(&self) -> bool {
+        self.distance > NOTICED[1]
     }
 }
 

@@ -134,7 +134,7 @@ impl ObservedTrack {
             // This row may be the wrong one.
             let right = if fits { fit.likelihood.max(WRONG) } else { WRONG };
             let likelihood = doubt.evidence + other.likelihood;
-            if other.is_expected && likelihood > right {
+            if other.is_expected && doubt.is_noticed() && likelihood > right {
                 let misfit = (doubt.time, doubt.distance, doubt.treatment);
                 doubt.other.take(row, other, tick_time, known, recording);
                 *self = doubt.other;

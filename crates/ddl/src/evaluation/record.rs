@@ -35,8 +35,9 @@ pub(crate) struct MeasuredRecording {
 
 /// 1: with the row of the packed model. 2: the central goal is drawn towards the extrapolated last step. 3: the
 /// single forecast is straight. 4: motion is bounded. 5: the row of the packed model is called so. 6: further
-/// rows of `published`, whose epoch is chosen on all headline windows. 7: more tracks begin anew after a jump.
-const ROWS: u32 = 7;
+/// rows of `published`, whose epoch is chosen on all headline windows. 7: more tracks begin anew after a jump. 8: a row
+/// that the next one refutes is left out, and exchanged ids go on.
+const ROWS: u32 = 8;
 
 impl EvaluationRecord {
     fn new(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest) -> Self {

@@ -29,14 +29,14 @@ pub(crate) fn together<'a>(windows: &'a [Window], mut walked: Vec<Walked<'a>>) -
     windows.iter().zip(walked).map(move |(window, likelier)| {
         let other = if window.has_others() { others.next() } else { None };
         match other {
-            Some(other) => both(window, likelier, &other),
+            Some(other) => both(window, &likelier, &other),
             None => likelier,
         }
     })
 }
 
 /// Each hypothesis starts where its explanation ends.
-fn both<'a>(window: &'a Window, likelier: Walked<'a>, other: &Walked<'a>) -> Walked<'a> {
+fn both<'a>(window: &'a Window, likelier: &Walked<'a>, other: &Walked<'a>) -> Walked<'a> {
     let mut pairs = Vec::with_capacity(likelier.goals.len());
     for i in 0..window.len() {
         let of = |walked: &Walked<'_>, least: usize, weight: f64| {
@@ -47,8 +47,8 @@ fn both<'a>(window: &'a Window, likelier: Walked<'a>, other: &Walked<'a>) -> Wal
         let weight = window.other(i).map_or(0.0, |other| other.weight);
         let share = weight.min(OTHER_SHARE);
         let added = of(other, (share * likelier.hypotheses as f64).round() as usize, weight);
-        let kept = of(&likelier, likelier.hypotheses - added.len(), 1.0 - weight);
-        pairs.extend(kept.into_iter().map(|(pair, weight)| (&likelier, None, pair, weight)));
+        let kept = of(likelier, likelier.hypotheses - added.len(), 1.0 - weight);
+        pairs.extend(kept.into_iter().map(|(pair, weight)| (likelier, None, pair, weight)));
         let origin = Some((other.start(i), other.bounds(i)));
         pairs.extend(added.into_iter().map(|(pair, weight)| (other, origin, pair, weight)));
     }
@@ -57,7 +57,7 @@ fn both<'a>(window: &'a Window, likelier: Walked<'a>, other: &Walked<'a>) -> Wal
     let factors = pairs.iter().map(|(walked, _, pair, _)| Some(&walked.factors.as_ref()?[steps(*pair)]));
     Walked {
         window,
-        spread: heavier(window, &likelier, other),
+        spread: heavier(window, likelier, other),
         rolled_out: paths.flatten().copied().collect(),
         factors: factors.collect::<Option<Vec<_>>>().map(|factors| factors.concat()),
         goals: pairs.iter().map(|(walked, _, pair, _)| walked.goals[*pair]).collect(),
@@ -102,11 +102,11 @@ mod tests {
     use super::*;
     use crate::live::watched_scene::tests::model;
     use crate::{Ddl, Request};
-    use ddl_core::{OBSERVED, OtherObservation, PedestrianId};
+    use ddl_core::{OBSERVED, ObservationQuality, OtherObservation, PedestrianId};
     use ddl_data::{Clock, Completeness, LiveTracks};
     use ddl_scene::{Plan, PlanPoint};
     use proptest::prelude::*;
-    use rand::{RngExt as _, SeedableRng as _};
+    use rand::SeedableRng as _;
     use rand_chacha::ChaCha8Rng;
     use std::sync::LazyLock;
 
@@ -181,7 +181,7 @@ mod tests {
         let plain = Window::new("yard", 0, 1, ids, vec![track(0.0), track(30.0)]).unwrap();
         let mut positions = std::array::from_fn(|t| track(0.0)[t]);
         positions[OBSERVED - 1][0] += 3.0;
-        let other = OtherObservation { positions, quality: Default::default(), weight: 0.75 };
+        let other = OtherObservation { positions, quality: ObservationQuality::default(), weight: 0.75 };
         let window = plain.clone().with_others(vec![(0, other)]);
         let [likelier, elsewhere] = window.explanations();
         let ask = |window: Window, request: &Request| MODEL.forecast(&[window], request).unwrap().remove(0);

@@ -90,7 +90,8 @@ impl Ddl {
         Ok((self.network.copy_weights()?, proposal))
     }
 
-    /// What is asked of each window. Joint futures of a window do not depend on the other windows; [adaptive
+    /// What is asked of each window. Who has [another explanation](Window::other) has hypotheses of both, and one path of
+    /// the likelier one. Joint futures of a window do not depend on the other windows; [adaptive
     /// regions](Request::adaptive_regions) go from one to the next, in order of time.
     ///
     /// # Errors

@@ -112,7 +112,7 @@ class Fit:
     """How far a row is from where its pedestrian may be."""
 
     def doubt(self, seconds):
-        seldom = ramp(self.distance / self.deviation, 2, 4) * ramp(self.distance, 0.07, 0.14)
+        seldom = ramp(self.distance / self.deviation, 2, 4) * ramp(self.distance, 0.07, 0.15)
         acceleration = (self.distance - 2 * self.deviation) / seconds**2
         weight = seldom * (0.78 + 0.17 * ramp(acceleration, 5, 10))
         return weight if weight >= 0.1 else None
@@ -179,7 +179,7 @@ class Track:
             other = doubt.other.fit(time, position, tick, known)
             before = doubt.evidence + other.likelihood
             right = max(fit.likelihood, WRONG) if fits else WRONG
-            if other.is_expected and before > right:
+            if other.is_expected and doubt.told[1] > 0.15 and before > right:
                 self.__dict__ = doubt.other.__dict__
                 self.take(time, position, other, tick, known, recording)
                 return doubt.told
