@@ -187,6 +187,20 @@ fn futures_are_written_as_sample_files_and_read_back() {
     assert_eq!(first(&read), of_model);
 }
 
+/// With one row a constant velocity stands still; more rows are other conditions, whose numbers differ.
+#[test]
+fn few_rows_are_conditions_of_their_own() {
+    let place = Place::with_recordings();
+    let ask = |rows: &str| place.ok(&format!("evaluate --model hotel --data mine --fps 25 --observed-rows {rows}"));
+    let [one, two] = ["1", "2"].map(ask);
+    assert!(one.contains("observed for 1 of 8 rows") && two.contains("observed for 2 of 8 rows") && one != two);
+    let errors = |baseline: &str| {
+        let line = one.lines().find(|line| line.ends_with(baseline)).unwrap();
+        line.split_whitespace().find(|word| word.contains('/')).unwrap()
+    };
+    assert_eq!(errors("constant velocity (last step)"), errors("constant velocity (mean observed)"));
+}
+
 #[test]
 fn goals_are_measured() {
     let place = Place::with_model();
