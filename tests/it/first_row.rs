@@ -65,7 +65,10 @@ proptest! {
         later in 0..2_usize,
     ) {
         let mut tracks = LiveTracks::new().with_completeness(Completeness::Partial);
-        let place = |[x, y, u, v]: [f64; 4], frame: i64| [4.0 * x + 0.4 * u * frame as f64, 4.0 * y + 0.4 * v * frame as f64];
+        let place = |[x, y, u, v]: [f64; 4], frame: i64| {
+            let time = 0.4 * frame as f64;
+            [4.0 * x + time * u, 4.0 * y + time * v]
+        };
         let rows = |frame| (2..).map(PedestrianId).zip(walks.iter().map(move |walk| place(*walk, frame)));
         let last = 7 + later as i64;
         for frame in 0..last {

@@ -89,8 +89,8 @@ fn risk_is_high_where_people_walk() {
     assert_eq!(streamed.succeeds().lines().last(), csv.lines().last());
 }
 
-/// Monte Carlo on what `forecast` prints of people who cannot meet: each follows one of its hypotheses, and deviates from
-/// it for the whole future by its scale times a draw of Student's t with 3 degrees of freedom.
+/// Monte Carlo on what `forecast` prints of people who cannot meet: each follows one of its hypotheses, and deviates
+/// from it for the whole future by its scale times a draw of Student's t with 3 degrees of freedom.
 #[test]
 fn risk_is_that_of_the_printed_hypotheses() {
     const DRAWS: usize = 3000;

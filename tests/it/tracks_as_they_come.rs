@@ -293,7 +293,7 @@ fn ids_that_look_like_numbers_are_names_in_files_and_streams() {
     let row = |t: i32, i: usize| format!("{t},{},{},{}\n", ids[i], 0.5 * f64::from(t), 2 * i);
     let rows: String = (0..9).flat_map(|t| (0..4).map(move |i| row(t, i))).collect();
     let place = Place::empty();
-    place.write("hex.csv", &format!("frame,pedestrian,x,y\n{rows}"));
+    place.write("hex.csv", format!("frame,pedestrian,x,y\n{rows}"));
     let file = place.ok("forecast hex.csv --fps 2.5 --one --format jsonl");
     let stream = place.run_on(&format!("frame,pedestrian,x,y\n{rows}"), "forecast - --fps 2.5 --one --format jsonl");
     assert_eq!(stream.succeeds(), file);

@@ -137,7 +137,8 @@ pub struct ddl_view {
     pub misfit_count: usize,
     /// Segments in the memory of the place; 0 without one.
     pub remembered: usize,
-    /// What is wrong with the memory of the place, or doubtful of the plan, though there is a forecast; null if nothing.
+    /// What is wrong with the memory of the place, or doubtful of the plan, though there is a forecast; null if
+    /// nothing.
     pub warning: *const c_char,
 }
 

@@ -172,8 +172,8 @@ impl Window {
         self.qualities.get(i).copied().unwrap_or_default()
     }
 
-    /// The same window with other explanations of some pedestrians, by ascending index. The observed positions are those
-    /// of the likelier explanation.
+    /// The same window with other explanations of some pedestrians, by ascending index. The observed positions are
+    /// those of the likelier explanation.
     ///
     /// # Panics
     /// When an index is out of range, or they do not ascend.

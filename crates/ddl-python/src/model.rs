@@ -88,8 +88,8 @@ impl ForecastModel {
         self.0.parameter_count() + self.0.goal_model().parameter_count()
     }
 
-    /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`. Also returns texts about doubtful positions and a doubtful
-    /// plan.
+    /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`. Also returns texts about doubtful positions
+    /// and a doubtful plan.
     fn forecast<'py>(
         &self,
         py: Python<'py>,

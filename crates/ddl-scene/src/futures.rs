@@ -32,8 +32,8 @@ pub struct Futures {
 }
 
 impl Futures {
-    /// The futures of a joint forecast of this window, which are all that is known of the scene. Its pedestrians respond
-    /// to a plan if there is one.
+    /// The futures of a joint forecast of this window, which are all that is known of the scene. Its pedestrians
+    /// respond to a plan if there is one.
     ///
     /// # Errors
     /// The forecast has another number of pedestrians, or more than 255 hypotheses; the weight of a hypothesis differs
@@ -150,8 +150,8 @@ impl Futures {
         self.present[i]
     }
 
-    /// The position of pedestrian `i` on its hypothesis `k`, `time` seconds after the moment, metres: on straight lines between
-    /// the steps. Before the moment it is the present position, after 4.8 s the last one.
+    /// The position of pedestrian `i` on its hypothesis `k`, `time` seconds after the moment, metres: on straight lines
+    /// between the steps. Before the moment it is the present position, after 4.8 s the last one.
     pub fn position(&self, i: usize, k: usize, time: f64) -> Position {
         let path = self.hypotheses().hypothesis(i, k);
         let (step, share) = step_of(time);

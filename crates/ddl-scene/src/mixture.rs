@@ -100,8 +100,8 @@ impl<'a> JointScene<'a> {
     /// The most hypotheses of a pedestrian.
     pub const MOST_HYPOTHESES: usize = 255;
 
-    /// The scene of this window. Who follows the plan, if there is one, is somebody else, or the pedestrian `ego` of the
-    /// window; the others react to it.
+    /// The scene of this window. Who follows the plan, if there is one, is somebody else, or the pedestrian `ego` of
+    /// the window; the others react to it.
     ///
     /// # Panics
     /// When the forecast has another number of pedestrians than the window, or more than 255 hypotheses.

@@ -5,7 +5,8 @@
 //! that centre (`mass.rs`). For a part of the scene with samples s of the weight `w_s`, in which i follows `h_is`,
 //!
 //! ```text
-//! P(occupied by the part) = sum_s w_s (1 - prod_i (1 - m_ih_is)),   P(occupied) = 1 - prod (1 - P(occupied by the part))
+//! P(occupied by the part) = sum_s w_s (1 - prod_i (1 - m_ih_is))
+//! P(occupied)             = 1 - prod (1 - P(occupied by the part))
 //! ```
 //!
 //! Where two are not both likely to be there, they count as independent, which changes no probability by more than
@@ -227,7 +228,7 @@ fn free_of_part(area: &Area, row: usize, part: &ScenePart, bodies: &[OccupyingBo
     let first = occupied.iter().filter(|(_, all)| !all.is_empty()).map(|(first, _)| *first).min().unwrap_or(0);
     let end = occupied.iter().map(|(first, all)| first + all.len()).max().unwrap_or(0);
     let mut both = Vec::new();
-    for column in first..end {
+    for (column, free) in free.iter_mut().enumerate().take(end).skip(first) {
         let of = |(first, all): &(usize, Vec<f64>)| all.get(column.wrapping_sub(*first)).copied().unwrap_or(0.0);
         let total: f64 = occupied.iter().map(of).sum();
         both.clear();
@@ -235,7 +236,7 @@ fn free_of_part(area: &Area, row: usize, part: &ScenePart, bodies: &[OccupyingBo
             if occupied * (total - occupied) > BOTH {
                 both.push(body);
             } else {
-                free[column] *= 1.0 - occupied;
+                *free *= 1.0 - occupied;
             }
         }
         if !both.is_empty() {
@@ -243,7 +244,7 @@ fn free_of_part(area: &Area, row: usize, part: &ScenePart, bodies: &[OccupyingBo
             let of = |body: &OccupyingBody| (0..body.places.len()).map(|h| [1.0 - body.mass(h, place)]).collect();
             let away: Vec<Vec<[f64; 1]>> = both.iter().map(|body| of(body)).collect();
             let [occupied] = part.somebody(both.iter().zip(&away).map(|(body, away)| (body.pedestrian, &away[..])));
-            free[column] *= 1.0 - occupied;
+            *free *= 1.0 - occupied;
         }
     }
 }

@@ -12,8 +12,8 @@
 //! P(somebody)             = 1 - prod (1 - P(somebody of the part))
 //! ```
 //!
-//! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that results
-//! depend on nothing but their input. Less than 1/64 of one hypothesis may count as 0.
+//! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
+//! results depend on nothing but their input. Less than 1/64 of one hypothesis may count as 0.
 
 mod course;
 mod crowd;

@@ -122,7 +122,9 @@ proptest! {
 
     /// Not a bit of any answer changes if others come, go or move beyond reach.
     #[test]
-    fn who_is_out_of_reach_does_not_matter(people in crowd(), others in crowd(), away in 80.0..1e6f64, first in 0..9i64) {
+    fn who_is_out_of_reach_does_not_matter(
+        people in crowd(), others in crowd(), away in 80.0..1e6f64, first in 0..9i64,
+    ) {
         let ids = |count: usize, from: i64| (0..count as i64).map(move |i| 2 * i + from);
         let own: Vec<i64> = ids(people.len(), 1).collect();
         let alone = futures(&people, &own);
@@ -162,7 +164,9 @@ proptest! {
         others.rotate_left(turn);
         other_ids.rotate_left(turn);
         let [(a, b), (c, d)] = [scene(&people, &ids), scene(&others, &other_ids)];
-        let (one, mut other) = (JointScene::of(&a, &b, None, None).mixture(), JointScene::of(&c, &d, None, None).mixture());
+        let [one, mut other] = [(&a, &b), (&c, &d)].map(|(window, forecast)| {
+            JointScene::of(window, forecast, None, None).mixture()
+        });
         other.shares.rotate_right(turn * K * K);
         prop_assert_eq!(one, other);
         // Words get their numbers by arrival.

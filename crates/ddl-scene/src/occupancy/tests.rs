@@ -113,10 +113,12 @@ proptest! {
     /// one with the narrower forecast is the bulk.
     #[test]
     fn far_people_are_left_out_of_the_default_area(
-        starts in vec([-20.0..20.0f64, -20.0..20.0f64], 1..5), away in 2e3..1e6f64, place in 0_usize..5, times in 1_usize..90,
+        starts in vec([-20.0..20.0f64, -20.0..20.0f64], 1..5), away in 2e3..1e6f64, place in 0_usize..5,
+        times in 1_usize..90,
     ) {
         let place = place.min(starts.len());
-        let crowd = |starts: &[Position], scales: &[f64]| futures(starts, &vec![vec![[0.5; 2]]; starts.len()], &[1.0], scales);
+        let speeds = |count: usize| vec![vec![[0.5; 2]]; count];
+        let crowd = |starts: &[Position], scales: &[f64]| futures(starts, &speeds(starts.len()), &[1.0], scales);
         let near = crowd(&starts, &vec![0.5; starts.len()]).area(1.0, 0.1, times).unwrap();
         prop_assert!(near.1.is_empty());
         let mut all = starts.clone();

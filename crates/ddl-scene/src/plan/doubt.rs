@@ -63,8 +63,8 @@ impl Display for PlanDoubt {
             }
             Self::Slow { next } => write!(
                 to,
-                "has no later row within the 4.8 s of forecasts, and moves at less than 2 cm/s to that at {next} s: are \
-                 its times milliseconds? give seconds after the moment"
+                "has no later row within the 4.8 s of forecasts, and moves at less than 2 cm/s to that at {next} s: \
+                 are its times milliseconds? give seconds after the moment"
             ),
             Self::LateRadius { row, time, radius } => write!(
                 to,

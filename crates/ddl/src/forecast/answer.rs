@@ -18,7 +18,7 @@ pub struct Answer {
 #[derive(Debug, Clone, PartialEq)]
 enum AnsweredMotions {
     Alone(Forecast),
-    Joint(Futures),
+    Joint(Box<Futures>),
 }
 
 impl From<Forecast> for Answer {
@@ -33,7 +33,7 @@ impl Answer {
     }
 
     pub(crate) fn of_scene(futures: Futures, certificates: Certificates) -> Self {
-        Self { motions: AnsweredMotions::Joint(futures), certificates }
+        Self { motions: AnsweredMotions::Joint(Box::new(futures)), certificates }
     }
 
     /// The same answer with adapted regions and weights; joint futures stay as they are.

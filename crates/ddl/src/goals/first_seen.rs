@@ -117,8 +117,8 @@ mod tests {
     use super::*;
     use ddl_core::{ObservationQuality, PedestrianId, RememberedTrack};
 
-    /// The mean way to the goals of somebody at (5, 2) with this velocity, known so well, and these earlier pedestrians,
-    /// who passed so far from there and went on by so much in 4.8 s.
+    /// The mean way to the goals of somebody at (5, 2) with this velocity, known so well, and these earlier
+    /// pedestrians, who passed so far from there and went on by so much in 4.8 s.
     fn way(velocity: f64, velocity_deviation: f64, earlier: &[(f64, Position)]) -> Position {
         let track = (0..8).map(|t| [5.0 + 0.4 * velocity * (f64::from(t) - 7.0), 2.0]).collect();
         let quality = ObservationQuality { unseen: 7, velocity_deviation, ..ObservationQuality::default() };
