@@ -261,7 +261,7 @@ fn one_pedestrian_has_its_hypotheses() {
     // And in a scene with others, whom it cannot meet: a part is what it may do alone.
     let others = [([40.0, 2.0], 0.0, 1.0), person, ([41.0, 3.0], 3.0, 1.2)];
     let futures = futures(&others, &[3, 1, 2]);
-    let parts: Vec<&[usize]> = futures.parts().iter().map(|part| part.pedestrians()).collect();
+    let parts: Vec<&[usize]> = futures.parts().iter().map(ddl_scene::ScenePart::pedestrians).collect();
     assert_eq!(parts, [&[0, 2][..], &[1]]);
     assert_eq!(answers(&futures.of_pedestrians(&[1]), 1), answers(&self::futures(&[person], &[7]), 1));
 }

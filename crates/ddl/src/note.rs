@@ -171,9 +171,9 @@ impl Display for Note {
             Self::Implausible(warning) => implausible(warning, to),
             Self::Estimated { forecasts, late, hardly, carried } => write!(
                 to,
-                "of {forecasts} forecasts {late} are of pedestrians tracked for less than {OBSERVED} steps ({hardly} \
-                 of them just seen, so that nobody knows where they go), and {carried} of pedestrians last seen a little \
-                 before (columns unseen and age); {} and {} leave them out",
+                "of {forecasts} forecasts {late} are of pedestrians tracked for less than {OBSERVED} steps \
+                 ({hardly} of them just seen, so that nobody knows where they go), and {carried} of pedestrians last \
+                 seen a little before (columns unseen and age); {} and {} leave them out",
                 Setting::Whole,
                 Setting::MaxAge
             ),

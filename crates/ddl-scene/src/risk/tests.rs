@@ -197,8 +197,10 @@ proptest! {
         // What comes after the forecast changes nothing.
         let [_, x, y, _] = row_at(&rows, 4.8);
         let until_end = rows.iter().filter(|row| row[0] < 4.8).copied();
-        let with_late = |late: f64| until_end.clone().chain([[4.8, x, y, late], [60.0, x, y, late]]).collect::<Vec<_>>();
-        let [ends, goes_on] = [0.0, 9.0].map(|late| plan(&with_late(late)));
+        let [ends, goes_on] = [0.0, 9.0].map(|late| {
+            let rows = until_end.clone().chain([[4.8, x, y, late], [60.0, x, y, late]]);
+            plan(&rows.collect::<Vec<_>>())
+        });
         prop_assert_eq!(crowd.risks_if_seen(&[ends], within, None), crowd.risks_if_seen(&[goes_on], within, None));
         let (mut starts, mut velocities, mut scales) = (starts, velocities, scales);
         starts.reverse();
