@@ -211,7 +211,9 @@ class Forecaster:
         made, doubt = self._core.forecast_recording(
             recording._core, last, samples, whole, max_age, every, certificates, joint
         )
-        return _told([Forecast._of(parts, joint=joint) for parts in made], [f"{recording.name}: {doubt}"] if doubt else [])
+        return _told(
+            [Forecast._of(parts, joint=joint) for parts in made], [f"{recording.name}: {doubt}"] if doubt else []
+        )
 
     def forecast_table(
         self,
