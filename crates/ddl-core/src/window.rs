@@ -167,7 +167,11 @@ impl Window {
         self.other(i).map_or(own, |other| other.beside(self.observed(i), own))
     }
 
-    fn own_quality(&self, i: usize) -> ObservationQuality {
+    /// How well the i-th pedestrian was observed by its likelier explanation alone.
+    ///
+    /// # Panics
+    /// If `i >= len()`.
+    pub fn own_quality(&self, i: usize) -> ObservationQuality {
         assert!(i < self.len(), "pedestrian {i} of {}", self.len());
         self.qualities.get(i).copied().unwrap_or_default()
     }

@@ -358,7 +358,7 @@ impl LiveTracks {
     /// The window as if its pedestrians had been observed only for the last `rows` of its 8 steps, 1 to 8.
     #[must_use]
     pub fn last_rows(window: &Window, rows: usize) -> Window {
-        let mut tracks = Self::new().with_completeness(Completeness::Partial);
+        let mut tracks = Self::new().with_completeness(Completeness::Partial).without_doubt();
         for step in OBSERVED.saturating_sub(rows.max(1))..OBSERVED {
             // Cannot fail: the positions of a window are those of a frame.
             let _ = tracks.push(step as i64, window.pedestrians().iter().copied().zip(window.positions_at(step)));

@@ -27,6 +27,8 @@ pub struct Futures {
     parts: Vec<ScenePart>,
     /// What each pedestrian may do; `None` where these are the futures themselves.
     hypotheses: Option<Forecast>,
+    /// `[N][K]`: where the hypotheses begin (m); empty if all begin at the present positions.
+    starts: Vec<Position>,
     forecast: Forecast,
     plan: Option<Plan>,
 }
@@ -46,27 +48,33 @@ impl Futures {
         let weights = (0..forecast.hypotheses()).map(|k| forecast.weight(0, k)).collect();
         let pedestrians = (0..forecast.pedestrians()).collect();
         let parts = vec![ScenePart::together(pedestrians, weights)];
-        Self::drawn(window, parts, None, forecast, plan)
+        Self::drawn(window, parts, (None, Vec::new()), forecast, plan)
     }
 
-    /// The scene of these parts, whose pedestrians have these hypotheses, and futures drawn from it.
+    /// The scene of these parts, whose pedestrians have these hypotheses, and futures drawn from it. `starts` `[N][K]`
+    /// (m) is where the hypotheses begin, where some explain the last row otherwise, else empty.
     ///
     /// # Errors
     /// As [`new`](Self::new).
+    ///
+    /// # Panics
+    /// When there is another number of starts than of hypotheses.
     pub fn of_parts(
         window: &Window,
         parts: Vec<ScenePart>,
         hypotheses: Forecast,
+        starts: Vec<Position>,
         forecast: Forecast,
         plan: Option<Plan>,
     ) -> Result<Self, SceneError> {
-        Self::drawn(window, parts, Some(hypotheses), forecast, plan)
+        assert!(starts.is_empty() || starts.len() == window.len() * hypotheses.hypotheses(), "{} starts", starts.len());
+        Self::drawn(window, parts, (Some(hypotheses), starts), forecast, plan)
     }
 
     fn drawn(
         window: &Window,
         parts: Vec<ScenePart>,
-        hypotheses: Option<Forecast>,
+        (hypotheses, starts): (Option<Forecast>, Vec<Position>),
         forecast: Forecast,
         plan: Option<Plan>,
     ) -> Result<Self, SceneError> {
@@ -82,9 +90,10 @@ impl Futures {
             }
         }
         let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
-        let deviations = (0..window.len()).map(|i| window.quality(i).deviation).collect();
+        let of_other = |i: usize| window.other(i).map_or(0.0, |other| other.quality.deviation);
+        let deviations = (0..window.len()).map(|i| window.own_quality(i).deviation.max(of_other(i))).collect();
         let are_known = (0..window.len()).map(|i| !window.quality(i).is_hardly_observed()).collect();
-        Ok(Self { present, deviations, are_known, groups: groups(window), parts, hypotheses, forecast, plan })
+        Ok(Self { present, deviations, are_known, groups: groups(window), parts, hypotheses, starts, forecast, plan })
     }
 
     /// [Groups](crate::groups) of pedestrians who walk together, as indices.
@@ -108,10 +117,14 @@ impl Futures {
     }
 
     /// The futures of the given pedestrians, at least one, in the given order; an index out of range panics. The others
-    /// have shaped them, but count in no answer.
+    /// have shaped them, but count in no answer. A pedestrian that is given twice panics.
     #[must_use]
     pub fn of_pedestrians(&self, pedestrians: &[usize]) -> Self {
-        let place = |i: &usize| pedestrians.iter().position(|kept| kept == i);
+        let mut places = vec![None; self.pedestrians()];
+        for (place, &i) in pedestrians.iter().enumerate() {
+            assert!(places[i].replace(place).is_none(), "pedestrian {i} is given twice");
+        }
+        let place = |i: &usize| places[*i];
         let groups = self.groups.iter().map(|group| group.iter().filter_map(place).collect::<Vec<usize>>());
         Self {
             present: pedestrians.iter().map(|&i| self.present[i]).collect(),
@@ -119,6 +132,12 @@ impl Futures {
             are_known: pedestrians.iter().map(|&i| self.are_known[i]).collect(),
             groups: groups.filter(|group| group.len() > 1).collect(),
             parts: self.parts.iter().filter_map(|part| part.renumbered(|i| place(&i))).collect(),
+            starts: if self.starts.is_empty() {
+                Vec::new()
+            } else {
+                let count = self.hypotheses().hypotheses();
+                pedestrians.iter().flat_map(|&i| (0..count).map(move |k| self.start(i, k))).collect()
+            },
             hypotheses: self.hypotheses.as_ref().map(|hypotheses| hypotheses.of_pedestrians(pedestrians)),
             forecast: self.forecast.of_pedestrians(pedestrians),
             plan: self.plan.clone(),
@@ -150,12 +169,18 @@ impl Futures {
         self.present[i]
     }
 
+    /// Where hypothesis `k` of pedestrian `i` begins, metres: at its present position, unless that is doubtful.
+    pub(crate) fn start(&self, i: usize, k: usize) -> Position {
+        let start = self.starts.get(i * self.hypotheses().hypotheses() + k);
+        start.copied().unwrap_or(self.present[i])
+    }
+
     /// The position of pedestrian `i` on its hypothesis `k`, `time` seconds after the moment, metres: on straight lines
-    /// between the steps. Before the moment it is the present position, after 4.8 s the last one.
+    /// between the steps. Before the moment it is where that begins, after 4.8 s the last one.
     pub fn position(&self, i: usize, k: usize, time: f64) -> Position {
         let path = self.hypotheses().hypothesis(i, k);
         let (step, share) = step_of(time);
-        let from = if step == 0 { self.present[i] } else { path[step - 1] };
+        let from = if step == 0 { self.start(i, k) } else { path[step - 1] };
         between(from, path[step.min(HORIZON - 1)], share)
     }
 

@@ -56,12 +56,13 @@ impl Hypotheses {
         Self { present, weights, paths, reach, radius: 0.0 }
     }
 
-    /// An order that depends on what they may do alone, by distances and weights, which a turned scene has too.
+    /// An order that depends on what they may do, by distances and weights, which a turned scene has too; then by where
+    /// they are.
     pub(crate) fn compare(&self, other: &Self) -> Ordering {
-        let weights = || self.weights.iter().zip(&other.weights).map(|(a, b)| a.total_cmp(b));
-        self.reach
-            .total_cmp(&other.reach)
-            .then_with(|| weights().find(|order| order.is_ne()).unwrap_or(Ordering::Equal))
+        let weights = self.weights.iter().zip(&other.weights).map(|(a, b)| a.total_cmp(b));
+        let places = self.present.iter().zip(&other.present).map(|(a, b)| a.total_cmp(b));
+        let mut orders = std::iter::once(self.reach.total_cmp(&other.reach)).chain(weights).chain(places);
+        orders.find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
     }
 
     /// Number of hypotheses, K.

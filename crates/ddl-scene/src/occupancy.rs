@@ -9,8 +9,8 @@
 //! P(occupied)             = 1 - prod (1 - P(occupied by the part))
 //! ```
 //!
-//! Where two are not both likely to be there, they count as independent, which changes no probability by more than
-//! 0.001 for each.
+//! Where two are not both likely to be there, they count as independent: no probability is too small by more than 0.001
+//! for each.
 //!
 //! At the moment itself the spread is 0, and the discs are those of the present positions.
 
@@ -45,7 +45,7 @@ impl Area {
     /// The most cells of an area. Its grid takes 4 bytes for each.
     pub const MOST_CELLS: usize = 50_000_000;
     /// The most cells of an area that nobody gives, around several pedestrians: 200 x 200 m in cells of 0.1 m.
-    pub const MOST_AROUND: usize = 4_000_000;
+    pub const MOST_AROUND: usize = 25_000_000;
 
     /// The area from one corner to the other (m), in cells of this size (m); larger by less than a cell if the cells do
     /// not fit.

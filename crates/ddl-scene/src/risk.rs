@@ -55,7 +55,7 @@ impl Futures {
     /// For each plan, how likely somebody comes within `within` metres of its edge, if nobody sees it. The pedestrian
     /// `ego` who follows the plan, if there is one, is no risk to itself.
     ///
-    /// A thousand plans among 25 pedestrians with 20 futures take some 20 ms on one core.
+    /// A thousand plans among 25 pedestrians with 20 hypotheses take some 30 ms on one core.
     /// The result does not depend on the number of threads, nor on which other plans there are.
     ///
     /// # Errors
@@ -159,7 +159,9 @@ impl Futures {
         let most = |distances: &Vec<[f64; DEVIATIONS]>| distances.as_flattened().iter().copied().fold(0.0, f64::max);
         let width = (distances.iter().map(most).fold(f64::INFINITY, f64::min) / CELLS as f64).max(f64::MIN_POSITIVE);
         let mut farther = [1.0; CELLS];
-        for (part, members) in crowd.by_part(0..self.pedestrians()) {
+        let least = |i: usize| distances[i].as_flattened().iter().copied().fold(f64::INFINITY, f64::min);
+        let near = (0..self.pedestrians()).filter(|&i| least(i) < width * CELLS as f64);
+        for (part, members) in crowd.by_part(near) {
             let farther_of = |i: usize| distances[i].iter().map(|distances| farther_shares(distances, width)).collect();
             let all: Vec<(usize, Vec<[f64; CELLS]>)> = members.into_iter().map(|i| (i, farther_of(i))).collect();
             let nearer = self.parts()[part].somebody(all.iter().map(|(i, farther)| (*i, &farther[..])));

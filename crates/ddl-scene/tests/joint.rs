@@ -92,7 +92,7 @@ fn futures(people: &[Person], ids: &[i64]) -> Futures {
     let paths = (0..people.len() * K).flat_map(|pair| path(&forecast, &mixture, pair / K, pair % K)).collect();
     let drawn = Forecast::new(people.len(), K, paths, mixture.weights.repeat(people.len()), None).unwrap();
     let (parts, drawn) = (scene.parts(), drawn.with_spread(spread).unwrap());
-    Futures::of_parts(&window, parts, forecast, drawn, None).unwrap()
+    Futures::of_parts(&window, parts, forecast, Vec::new(), drawn, None).unwrap()
 }
 
 /// What planners ask about the first pedestrians of a scene: the risk of plans that pass there, with that of each of

@@ -129,6 +129,7 @@ impl ObservedTrack {
         }
         let fit = self.fit(row, tick_time, known);
         let fits = (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time, known);
+        let mut kept = None;
         if let Some(mut doubt) = self.doubt.take() {
             let other = doubt.other.fit(row, tick_time, known);
             // This row may be the wrong one.
@@ -154,12 +155,17 @@ impl ObservedTrack {
                 self.doubt = Some(doubt);
                 return None;
             }
+            kept = Some(doubt);
         }
         if fits {
             self.take(row, fit, tick_time, known, recording);
             return None;
         }
         let (distance, treatment) = self.leave_out(row, fit.distance, tick_time, known, recording);
+        if treatment == MisfitTreatment::LeftOut {
+            // Such a row decides nothing about the one before.
+            self.doubt = kept;
+        }
         Some((row.time, distance, treatment))
     }
 
@@ -212,8 +218,8 @@ impl ObservedTrack {
         other.doubt = None;
         if evidence > 0.0 {
             *self = other;
-            self.push(row, tick_time, known, recording);
-            return Some((row.time, distance, treatment));
+            let misfit = self.push(row, tick_time, known, recording);
+            return misfit.or(Some((row.time, distance, treatment)));
         }
         other.accept(row, tick_time, known, &mut recording.clone());
         let misfit = self.push(row, tick_time, known, recording);

@@ -95,7 +95,7 @@ impl CrowdAtRisk {
         let scales: Vec<_> = scales.collect::<Result<_, SceneError>>()?;
         let pairs = || (0..count).flat_map(|k| (0..n).map(move |i| (i, k)));
         let path = |(i, k)| {
-            let mut path = [futures.present(i); HORIZON + 1];
+            let mut path = [futures.start(i, k); HORIZON + 1];
             path[1..].copy_from_slice(forecast.hypothesis(i, k));
             path
         };

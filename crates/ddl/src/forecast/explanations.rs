@@ -4,7 +4,8 @@ use crate::forecast::certified::Walked;
 use ddl_core::{HORIZON, Position, Spread, Window, distance};
 use std::borrow::Cow;
 
-/// Largest share of the hypotheses that the less likely explanation has, whatever its weight.
+/// Largest share of the hypotheses that the less likely explanation has. Its weight, which is on the safe side, may be
+/// larger: fewer of the likelier one would cost more error than hypotheses of a row that is seldom wrong gain.
 const OTHER_SHARE: f64 = 0.15;
 
 /// The windows of the likelier explanations and, if they are asked for, those of the others of each window that

@@ -8,7 +8,7 @@ use crate::forecast::answer::Answer;
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
 use crate::trust::calibration::Calibration;
-use ddl_core::{Forecast, ForecastError, HORIZON, PedestrianName, Position, Spread, TIME_STEP, Window};
+use ddl_core::{Forecast, ForecastError, HORIZON, OBSERVED, PedestrianName, Position, Spread, TIME_STEP, Window};
 use ddl_scene::{Futures, JointMixture, JointScene, Plan, SceneError, ScenePart};
 
 /// A plan that the pedestrians of a scene respond to.
@@ -25,6 +25,8 @@ struct JointWalks<'a> {
     walked: Walked<'a>,
     parts: Vec<ScenePart>,
     hypotheses: Forecast,
+    /// `[N][K]`: where the hypotheses begin (m); or empty.
+    starts: Vec<Position>,
 }
 
 impl<'a> Walked<'a> {
@@ -37,6 +39,9 @@ impl<'a> Walked<'a> {
         let marginal = self.walked(rolled_out)?;
         let scene = JointScene::of(self.window, &marginal, given.map(|given| &given.plan), self.ego(given));
         let (mixture, parts) = (scene.mixture(), scene.parts());
+        let present = |pair: usize| self.window.observed(pair / self.hypotheses)[OBSERVED - 1];
+        let begins = self.origins.iter().enumerate().map(|(pair, origin)| origin.map_or(present(pair), |(at, _)| at));
+        let starts = begins.collect();
         let pairs = self.window.len() * self.hypotheses;
         let steps = || (0..pairs).flat_map(|pair| (0..HORIZON).map(move |t| (pair, t)));
         if self.factors.is_none() {
@@ -55,7 +60,7 @@ impl<'a> Walked<'a> {
         self.goals = goals.collect();
         self.weights = mixture.weights.repeat(self.window.len());
         self.spread = spread(&marginal, &mixture);
-        Ok(JointWalks { walked: self, parts, hypotheses: marginal })
+        Ok(JointWalks { walked: self, parts, hypotheses: marginal, starts })
     }
 
     fn ego(&self, given: Option<&GivenPlan>) -> Option<usize> {
@@ -66,13 +71,13 @@ impl<'a> Walked<'a> {
     /// of them.
     pub(crate) fn joint_answer(self, given: Option<&GivenPlan>, certificates: bool) -> Result<Answer, ForecastError> {
         let (window, ego) = (self.window, self.ego(given));
-        let JointWalks { walked, parts, mut hypotheses } = self.joint(given)?;
+        let JointWalks { walked, parts, mut hypotheses, starts } = self.joint(given)?;
         let plan = given.map(|given| given.plan.clone());
         let (mut forecast, certificates) = walked.certified(certificates)?;
         if let (Some(ego), Some(plan)) = (ego, &plan) {
             [forecast, hypotheses] = [forecast, hypotheses].map(|forecast| forecast.with_path(ego, &planned(plan)));
         }
-        let futures = Futures::of_parts(window, parts, hypotheses, forecast, plan);
+        let futures = Futures::of_parts(window, parts, hypotheses, starts, forecast, plan);
         Ok(Answer::of_scene(futures.map_err(|error| ForecastError::model(NAME, error))?, certificates))
     }
 }

@@ -5,7 +5,8 @@ use ddl_data::{Completeness, LiveError, LiveTracks, Misfit};
 
 /// The pedestrians of a scene that can be forecast, of those whose last 8 positions are given.
 ///
-/// A position that no pedestrian can have reached is left out, or begins the track anew, as in [`LiveTracks`].
+/// A position that no pedestrian can have reached is left out, or begins the track anew, as in [`LiveTracks`]. Whose
+/// positions are all impossible cannot be forecast.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct ObservedPast {
@@ -38,7 +39,12 @@ impl ObservedPast {
             live.push(frame as i64, seen)?;
             misfits.extend_from_slice(live.misfits());
         }
-        let window = live.window();
+        // Of somebody who was seen more often, one row is left where nobody can have been at the others.
+        let count = |track: &Vec<Position>| track.iter().filter(|at| !at[0].is_nan()).count();
+        let is_possible = |window: &Window, i: usize| {
+            count(&tracks[window.pedestrians()[i].0 as usize]) < 2 || !window.quality(i).is_hardly_observed()
+        };
+        let window = live.window().and_then(|window| window.filter_pedestrians(|i| is_possible(&window, i)));
         let mut rows = vec![None; asked];
         for (index, id) in window.iter().flat_map(Window::pedestrians).enumerate() {
             if let Some(row) = rows.get_mut(id.0 as usize) {

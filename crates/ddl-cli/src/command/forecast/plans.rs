@@ -46,10 +46,12 @@ impl GivenPlanOptions {
 pub(crate) struct PlanFile {
     path: PathBuf,
     holds_one: bool,
-    /// The last plans that could be read.
+    /// The last text that could be read, and its plans.
+    text: String,
     plans: Rc<[NamedPlan]>,
     /// Whether their last line had an end. Then one without is not whole.
     is_ended: bool,
+    has_changed: bool,
     /// Why the file cannot be read now, as was told; empty if it can.
     fault: String,
 }
@@ -74,6 +76,11 @@ impl PlanFile {
         Rc::clone(&self.plans)
     }
 
+    /// Whether the plans are others than at the last call.
+    pub(super) fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.has_changed)
+    }
+
     fn read_now(&mut self) -> anyhow::Result<()> {
         let (path, text) = (&self.path, small_file::read(&self.path)?);
         let is_ended = text.ends_with('\n');
@@ -84,7 +91,8 @@ impl PlanFile {
         if self.holds_one && plans.len() > 1 {
             bail!("{} holds {} plans; the pedestrians can respond to one", path.display(), plans.len());
         }
-        (self.plans, self.is_ended) = (plans.into(), is_ended);
+        self.has_changed |= self.text != text;
+        (self.plans, self.is_ended, self.text) = (plans.into(), is_ended, text);
         Ok(())
     }
 }

@@ -20,6 +20,8 @@ pub(crate) struct StreamState {
     /// The coordinate frame that the tracks name.
     pub(crate) frame_id: Option<String>,
     told: BTreeSet<&'static str>,
+    /// What was told of the present plans.
+    told_of_plans: BTreeSet<&'static str>,
     /// The plans of the command, if it has some.
     pub(crate) plans: PlanFile,
 }
@@ -32,8 +34,14 @@ impl StreamState {
 
     /// Tells remarks of which one of each kind is told, at this moment for the first time.
     pub(crate) fn tell_notes_once(&mut self, notes: impl IntoIterator<Item = Note>, moment: &Moment<'_>) {
+        // What is doubtful of other plans is told again.
+        if self.plans.take_changed() {
+            self.told_of_plans.clear();
+        }
         for note in notes {
-            self.tell_once(note.key(), format_args!("{}, at {} (told once)", note.line(), moment.when()));
+            if self.told_of_plans.insert(note.key()) {
+                tell(format_args!("{}, at {} (told once)", note.line(), moment.when()));
+            }
         }
     }
 
