@@ -47,3 +47,23 @@ fn a_doubtful_row_has_two_explanations_until_the_next() {
         }
     }
 }
+
+/// Somebody who stands is seen off its place twice, the second time where nobody can be: that row decides nothing about
+/// the first one, and the next right row shows that both are wrong.
+#[test]
+fn a_row_that_is_left_out_decides_nothing() {
+    for rate in [2.5, 10.0, 30.0] {
+        let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(1.0 / rate).unwrap())
+            .with_completeness(Completeness::Partial);
+        let first = (4.0 * rate) as i64;
+        let mut told = Vec::new();
+        for frame in 0..=first + 2 {
+            let x = [0.4, 4.0].get((frame - first) as usize).copied().unwrap_or(0.0);
+            let window = tracks.push(frame, [(PedestrianId(1), [x, 0.0])]).unwrap().unwrap();
+            told.extend(tracks.misfits().iter().map(|misfit| misfit.treatment));
+            assert_eq!(window.other(0).is_some(), [first, first + 1].contains(&frame), "{rate}: {frame} of {first}");
+            assert!(frame < first + 2 || distance(window.observed(0)[OBSERVED - 1], [0.0; 2]) < 0.02);
+        }
+        assert_eq!(told, [MisfitTreatment::LeftOut; 2], "{rate}");
+    }
+}
