@@ -28,7 +28,7 @@ pub(crate) struct OccupancyCommand {
     #[arg(id = "grids", long = "every", value_name = "SECONDS", default_value_t = 0.4, allow_negative_numbers = true)]
     every: f64,
     /// The area: lowest x and y, largest x and y, metres [default: all paths of the moment, and 1 m around them,
-    /// without people too far away for 4 million cells]
+    /// without people too far away for 25 million cells]
     #[arg(long, value_name = "X,Y,X,Y", value_parser = corners, allow_hyphen_values = true)]
     area: Option<[f64; 4]>,
     /// Radius of a pedestrian, metres

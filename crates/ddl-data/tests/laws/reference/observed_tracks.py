@@ -202,6 +202,8 @@ class Track:
         self.suspects.append((time, position, distance))
         begin, place, off = self.suspects[0]
         if (time - begin) * tick < 0.3 and (time - self.last()) * tick <= 1:
+            # Such a row decides nothing about the one before.
+            self.doubt = doubt
             return time, distance, LEFT_OUT
         others = self.suspects[1:]
         self.__init__(begin, place)
@@ -222,8 +224,7 @@ class Track:
         told = time, off, EXCHANGED
         if evidence > 0:
             self.__dict__ = other.__dict__
-            self.push(time, position, tick, known, recording)
-            return told
+            return self.push(time, position, tick, known, recording) or told
         other.accept(time, position, tick, known, RecordingNoise())
         misfit = self.push(time, position, tick, known, recording)
         self.doubt = Doubt(other, evidence, 0.5, told)
