@@ -116,8 +116,11 @@ impl Futures {
         self.hypotheses.as_ref().unwrap_or(&self.forecast)
     }
 
-    /// The futures of the given pedestrians, at least one, in the given order; an index out of range panics. The others
-    /// have shaped them, but count in no answer. A pedestrian that is given twice panics.
+    /// The futures of the given pedestrians, at least one, in the given order. The others have shaped them, but count in
+    /// no answer.
+    ///
+    /// # Panics
+    /// When an index is out of range, or given twice.
     #[must_use]
     pub fn of_pedestrians(&self, pedestrians: &[usize]) -> Self {
         let mut places = vec![None; self.pedestrians()];

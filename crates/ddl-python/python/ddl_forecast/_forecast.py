@@ -283,7 +283,7 @@ class Forecast:
         Warns
         -----
         DoubtWarning
-            Pedestrians are too far from the others for the default area of at most 25 million cells: it leaves them out.
+            Pedestrians are too far from the others for the default area of 25 million cells: it leaves them out.
         """
         grids, times, origin, outside = self._scene().occupancy((cell, every, radius, margin), area)
         if outside > 0:
