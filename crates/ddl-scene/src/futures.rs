@@ -116,8 +116,8 @@ impl Futures {
         self.hypotheses.as_ref().unwrap_or(&self.forecast)
     }
 
-    /// The futures of the given pedestrians, at least one, in the given order. The others have shaped them, but count in
-    /// no answer.
+    /// The futures of the given pedestrians, at least one, in the given order. The others have shaped them, but count
+    /// in no answer.
     ///
     /// # Panics
     /// When an index is out of range, or given twice.
