@@ -51,13 +51,24 @@ impl ScenePart {
         not_done: impl Iterator<Item = (usize, &'a [[f64; D]])>,
     ) -> [f64; D] {
         let row = |i: usize| self.pedestrians.partition_point(|other| *other < i);
-        let of_each: Vec<(&[u8], &[[f64; D]])> =
-            not_done.map(|(i, probabilities)| (&self.chosen[row(i)][..], probabilities)).collect();
+        let is_done = |probabilities: &[f64; D]| probabilities.iter().any(|not_done| *not_done < 1.0);
+        let of_each = not_done.map(|(i, probabilities)| {
+            (&self.chosen[row(i)], probabilities, probabilities.iter().map(is_done).collect::<Vec<bool>>())
+        });
+        let of_each: Vec<_> = of_each.collect();
         let mut somebody = [0.0; D];
         for (s, &weight) in self.weights.iter().enumerate() {
             let mut nobody = [1.0; D];
-            for (chosen, probabilities) in &of_each {
-                for (nobody, not_done) in nobody.iter_mut().zip(&probabilities[usize::from(chosen[s])]) {
+            let of_sample = of_each.iter().filter_map(|(chosen, of_hypotheses, is_done)| {
+                let hypothesis = usize::from(chosen[s]);
+                is_done[hypothesis].then_some(&of_hypotheses[hypothesis])
+            });
+            let mut of_sample = of_sample.peekable();
+            if of_sample.peek().is_none() {
+                continue;
+            }
+            for probabilities in of_sample {
+                for (nobody, not_done) in nobody.iter_mut().zip(probabilities) {
                     *nobody *= not_done;
                 }
             }

@@ -55,11 +55,6 @@ impl Walked<'_> {
     /// The forecast. If there is a flow, it states which certificates hold.
     pub(crate) fn forecast(mut self) -> Result<Forecast, ForecastError> {
         let rolled_out = std::mem::take(&mut self.rolled_out);
-        self.walked(rolled_out)
-    }
-
-    /// The forecast, where the network's own rollout goes along these paths.
-    pub(crate) fn walked(&self, rolled_out: Vec<Position>) -> Result<Forecast, ForecastError> {
         if self.factors.is_none() {
             return self.at(rolled_out);
         }
@@ -119,7 +114,7 @@ impl Walked<'_> {
 
     /// The positions of every hypothesis, `[N][K][12]`, and the result of `keep` for its certificate, `[N][K]`. With
     /// plain Euler steps the positions are those of the network's own rollout.
-    fn walks<R: Send>(
+    pub(crate) fn walks<R: Send>(
         &self,
         rolled_out: Vec<Position>,
         keep: impl Fn(LyapunovCertificate<f64>) -> R + Sync,

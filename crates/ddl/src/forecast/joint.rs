@@ -36,7 +36,8 @@ impl<'a> Walked<'a> {
             return Err(ForecastError::model(NAME, SceneError::Hypotheses { found, most }));
         }
         let rolled_out = std::mem::take(&mut self.rolled_out);
-        let marginal = self.walked(rolled_out)?;
+        let paths = if self.factors.is_some() { self.walks(rolled_out, drop)?.0 } else { rolled_out };
+        let marginal = self.at(paths)?;
         let scene = JointScene::of(self.window, &marginal, given.map(|given| &given.plan), self.ego(given));
         let (mixture, parts) = (scene.mixture(), scene.parts());
         let present = |pair: usize| self.window.observed(pair / self.hypotheses)[OBSERVED - 1];
