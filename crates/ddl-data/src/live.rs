@@ -288,7 +288,6 @@ impl LiveTracks {
         (self.last_number, self.last_frame) = (Some(frame), Some(tick));
         self.misfits.clear();
         let (tick_time, rows) = (self.tick_time(), positions.len());
-        let known = self.noise.clone();
         let exchanges = self.exchanges(tick as f64, &positions);
         for (id, position) in positions {
             let time = tick as f64;
@@ -304,9 +303,9 @@ impl LiveTracks {
                     let exchange = exchanges.iter().find(|(exchange, _)| exchange.id == id);
                     let misfit = match exchange.cloned() {
                         Some((exchange, track)) => {
-                            pedestrian.track.exchange(track, exchange, row, tick_time, &known, &mut self.noise)
+                            pedestrian.track.exchange(track, exchange, row, tick_time, &mut self.noise)
                         }
-                        None => pedestrian.track.push(row, tick_time, &known, &mut self.noise),
+                        None => pedestrian.track.push(row, tick_time, &mut self.noise),
                     };
                     pedestrian.track.forget_before(time, self.clock.frame_step() as f64);
                     self.misfits.extend(misfit.map(|(time, distance, treatment)| Misfit {
@@ -329,7 +328,7 @@ impl LiveTracks {
     fn exchanges(&self, time: f64, positions: &[(PedestrianId, Position)]) -> Vec<(Exchange, ObservedTrack)> {
         let track = |id: &PedestrianId| Some(&self.pedestrians.get(id)?.track);
         let rows = positions.iter().filter_map(|&(id, position)| {
-            let expected = track(&id)?.expectation(time, self.tick_time(), &self.noise)?;
+            let expected = track(&id)?.expectation(time, self.tick_time())?;
             Some((id, position, expected))
         });
         let exchanges = observe::exchanges(rows).into_iter();
@@ -425,7 +424,7 @@ impl LiveTracks {
             let max_age = self.max_age.unwrap_or_else(|| track.usual_interval().max(step as f64));
             // A wrong position says that the pedestrian is there.
             let is_present = *last_row == last || age < max_age;
-            let observed = |track: &ObservedTrack| track.observed(time, step as f64, self.tick_time(), &self.noise);
+            let observed = |track: &ObservedTrack| track.observed(time, step as f64, self.tick_time());
             if is_present
                 && let Some((observed, other)) = self.explained(track, observed)
                 && (self.completeness == Completeness::Partial || observed.quality.is_whole())

@@ -3,7 +3,7 @@
 use ddl_core::{OBSERVED, ObservationQuality, Position, TIME_STEP};
 
 use crate::observe::motion::{MotionState, WalkModel};
-use crate::observe::noise::{RecordingNoise, USUAL};
+use crate::observe::noise::USUAL;
 use crate::observe::track::{ObservedTrack, TimedPosition};
 
 /// Largest distance of a row from a step that it is taken for, in steps: 2 ms.
@@ -24,17 +24,11 @@ impl ObservedTrack {
     /// 0.4 s. Rows at the steps pass unchanged unless the tracker is noisy. A single row is a pedestrian at one place,
     /// whose velocity is not known; so is the last row of a track that is too short for its speed. `None` if positions
     /// overflow.
-    pub(crate) fn observed(
-        &self,
-        time: f64,
-        step: f64,
-        tick_time: f64,
-        recording: &RecordingNoise,
-    ) -> Option<ObservedPositions> {
-        if self.is_too_fast(recording, tick_time) {
-            return self.begun_at_last_row().observed(time, step, tick_time, recording);
+    pub(crate) fn observed(&self, time: f64, step: f64, tick_time: f64) -> Option<ObservedPositions> {
+        if self.is_too_fast(tick_time) {
+            return self.begun_at_last_row().observed(time, step, tick_time);
         }
-        let level = self.level(recording);
+        let level = self.level();
         let tolerance = ON_STEP * step;
         let steps: [f64; OBSERVED] = std::array::from_fn(|place| time - (OBSERVED - 1 - place) as f64 * step);
         let on_steps = steps.map(|at| self.row_at(at, tolerance).filter(|_| level.is_trusted()));

@@ -29,8 +29,8 @@ const FIRST: usize = 3;
 const MEMORY: f64 = 5000.0;
 /// Time (s) in which the rows of a track lose their weight by a factor e: a pedestrian may begin to turn.
 const RECENT: f64 = 3.0;
-/// Number of rows of the recording that weigh as much as one's own.
-const OTHERS: f64 = 200.0;
+/// Number of earlier rows of a track that weigh as much as its recent ones.
+const EARLIER: f64 = 200.0;
 
 /// Log-likelihood of each level.
 type Evidence = [f64; LEVELS];
@@ -42,10 +42,13 @@ pub struct RecordingNoise {
     rows: f64,
 }
 
-/// The noise of one track: a filter for each level.
+/// The noise of one track: a filter for each level. That of other tracks says nothing of it: who is far away must not
+/// change what is observed of somebody.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct TrackNoise {
+    /// Of the recent rows, and of all so far.
     evidence: Evidence,
+    so_far: RecordingNoise,
     motions: [MotionState; LEVELS],
     rows: usize,
 }
@@ -75,6 +78,13 @@ impl Default for RecordingNoise {
 }
 
 impl RecordingNoise {
+    /// Older rows lose their weight, and a row comes.
+    fn fade(&mut self) {
+        let keep = 1.0 - 1.0 / MEMORY;
+        self.rows = self.rows * keep + 1.0;
+        self.evidence = self.evidence.map(|evidence| evidence * keep);
+    }
+
     /// Standard deviation of a coordinate (m).
     #[must_use]
     pub fn metres(&self) -> f64 {
@@ -86,6 +96,7 @@ impl TrackNoise {
     pub(super) fn of_first(position: Position) -> Self {
         Self {
             evidence: [0.0; LEVELS],
+            so_far: RecordingNoise::default(),
             motions: NoiseLevel::all().map(|level| MotionState::first_seen(position, level.walk())),
             rows: 1,
         }
@@ -96,10 +107,10 @@ impl TrackNoise {
         &self.motions[level.0]
     }
 
-    /// The likeliest level, by this track and the recording it is in.
-    pub(super) fn level(&self, recording: &RecordingNoise) -> NoiseLevel {
-        let share = (OTHERS / recording.rows).min(1.0);
-        likeliest(&std::array::from_fn(|level| self.evidence[level] + share * recording.evidence[level]))
+    /// The likeliest level.
+    pub(super) fn level(&self) -> NoiseLevel {
+        let share = (EARLIER / self.so_far.rows).min(1.0);
+        likeliest(&std::array::from_fn(|level| self.evidence[level] + share * self.so_far.evidence[level]))
     }
 
     /// Adds a row, some seconds after the last, to this track and its recording.
@@ -107,9 +118,8 @@ impl TrackNoise {
         self.rows += 1;
         let counts = self.rows > FIRST;
         if counts {
-            let keep = 1.0 - 1.0 / MEMORY;
-            recording.rows = recording.rows * keep + 1.0;
-            recording.evidence = recording.evidence.map(|evidence| evidence * keep);
+            recording.fade();
+            self.so_far.fade();
         }
         let keep = (-seconds / RECENT).exp();
         for level in 0..LEVELS {
@@ -120,6 +130,7 @@ impl TrackNoise {
                 let variance = expected.variance + noise * noise;
                 let likelihood = log_likelihood(expected.distance(position), variance);
                 self.evidence[level] += likelihood;
+                self.so_far.evidence[level] += likelihood;
                 recording.evidence[level] += likelihood;
             }
             self.motions[level] = expected.corrected(position, noise);

@@ -14,9 +14,9 @@ fn observed(rows: &[(f64, Position)], time: f64) -> ObservedPositions {
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
         track.forget_before(time, 0.4);
-        track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
+        track.push(TimedPosition { time, position }, 1.0, &mut noise);
     }
-    track.observed(time, 0.4, 1.0, &noise).unwrap()
+    track.observed(time, 0.4, 1.0).unwrap()
 }
 
 fn walk(times: impl Iterator<Item = f64>) -> Vec<(f64, Position)> {
@@ -44,7 +44,7 @@ fn noise_is_measured() {
             let rows = noisy(&walk((0..30).map(|k| 0.1 * f64::from(k))), added, seed);
             let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
             for &(time, position) in &rows[1..] {
-                track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
+                track.push(TimedPosition { time, position }, 1.0, &mut noise);
             }
         }
         assert!(measured.contains(&noise.metres()), "{added}: {}", noise.metres());
@@ -87,16 +87,16 @@ fn the_rows_that_are_kept_are_bounded() {
     let mut noise = RecordingNoise::default();
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
-        track.push(TimedPosition { time, position }, 1.0, &noise.clone(), &mut noise);
+        track.push(TimedPosition { time, position }, 1.0, &mut noise);
         track.forget_before(time, 0.4);
         assert!(track.rows.len() <= 2300, "{}", track.rows.len());
-        let observed = track.observed(time, 0.4, 1.0, &noise);
+        let observed = track.observed(time, 0.4, 1.0);
         assert!(time < 2.81 || observed.is_some_and(|observed| observed.quality.is_whole()), "{time}");
     }
     let last = rows[rows.len() - 1].0;
     let expected = walk((0..8).map(|place| last - 0.4 * f64::from(7 - place)));
     let expected: Vec<Position> = expected.into_iter().map(|(_, position)| position).collect();
-    let found = track.observed(last, 0.4, 1.0, &noise).unwrap().positions;
+    let found = track.observed(last, 0.4, 1.0).unwrap().positions;
     assert!(farthest(&found, &expected) < 0.01, "{found:?}");
 }
 

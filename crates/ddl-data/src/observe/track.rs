@@ -112,32 +112,30 @@ impl ObservedTrack {
         Self::beginning(row.time, row.position)
     }
 
-    /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. Whether it fits is decided with the
-    /// noise `known` before, so that it does not depend on the order of pedestrians; what it shows is added to
-    /// `recording`. Returns the time of a row that is not where the pedestrian was expected (this one or the one
+    /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. What it shows of
+    /// the noise is added to `recording`. Returns the time of a row that is not where the pedestrian was expected (this one or the one
     /// before), how far off (m) it is, and how it is treated.
     pub(crate) fn push(
         &mut self,
         row: TimedPosition,
         tick_time: f64,
-        known: &RecordingNoise,
         recording: &mut RecordingNoise,
     ) -> Option<(f64, f64, MisfitTreatment)> {
         if (row.time - self.last_time()) * tick_time > LONGEST_GAP {
             *self = Self::beginning(row.time, row.position);
             return None;
         }
-        let fit = self.fit(row, tick_time, known);
-        let fits = (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time, known);
+        let fit = self.fit(row, tick_time);
+        let fits = (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time);
         let mut kept = None;
         if let Some(mut doubt) = self.doubt.take() {
-            let other = doubt.other.fit(row, tick_time, known);
+            let other = doubt.other.fit(row, tick_time);
             // This row may be the wrong one.
             let right = if fits { fit.likelihood.max(WRONG) } else { WRONG };
             let likelihood = doubt.evidence + other.likelihood;
             if other.is_expected && doubt.is_noticed() && likelihood > right {
                 let misfit = (doubt.time, doubt.distance, doubt.treatment);
-                doubt.other.take(row, other, tick_time, known, recording);
+                doubt.other.take(row, other, tick_time, recording);
                 *self = doubt.other;
                 return Some(misfit);
             }
@@ -148,20 +146,20 @@ impl ObservedTrack {
             {
                 // The row before is still the doubtful one.
                 doubt.evidence = likelihood - right;
-                doubt.other.accept(row, tick_time, known, &mut recording.clone());
+                doubt.other.accept(row, tick_time, &mut recording.clone());
                 doubt.weight = doubt.weight.max(weight);
                 self.suspects.clear();
-                self.accept(row, tick_time, known, recording);
+                self.accept(row, tick_time, recording);
                 self.doubt = Some(doubt);
                 return None;
             }
             kept = Some(doubt);
         }
         if fits {
-            self.take(row, fit, tick_time, known, recording);
+            self.take(row, fit, tick_time, recording);
             return None;
         }
-        let (distance, treatment) = self.leave_out(row, fit.distance, tick_time, known, recording);
+        let (distance, treatment) = self.leave_out(row, fit.distance, tick_time, recording);
         if treatment == MisfitTreatment::LeftOut {
             // Such a row decides nothing about the one before.
             self.doubt = kept;
@@ -170,14 +168,7 @@ impl ObservedTrack {
     }
 
     /// Takes a row that fits, perhaps with doubt.
-    fn take(
-        &mut self,
-        row: TimedPosition,
-        fit: Fit,
-        tick_time: f64,
-        known: &RecordingNoise,
-        recording: &mut RecordingNoise,
-    ) {
+    fn take(&mut self, row: TimedPosition, fit: Fit, tick_time: f64, recording: &mut RecordingNoise) {
         self.suspects.clear();
         let doubt = fit.doubt((row.time - self.last_time()) * tick_time).map(|weight| Doubt {
             other: self.clone(),
@@ -187,7 +178,7 @@ impl ObservedTrack {
             distance: fit.distance,
             treatment: MisfitTreatment::LeftOut,
         });
-        self.accept(row, tick_time, known, recording);
+        self.accept(row, tick_time, recording);
         self.doubt = doubt.map(Box::new);
     }
 
@@ -198,9 +189,9 @@ impl ObservedTrack {
     }
 
     /// Where the pedestrian is expected at a time; `None` if the last row is too old.
-    pub(crate) fn expectation(&self, time: f64, tick_time: f64, known: &RecordingNoise) -> Option<Expectation> {
+    pub(crate) fn expectation(&self, time: f64, tick_time: f64) -> Option<Expectation> {
         let seconds = (time - self.last_time()) * tick_time;
-        let (expected, deviation) = self.expected_after(seconds, known);
+        let (expected, deviation) = self.expected_after(seconds);
         (seconds <= LONGEST_DOUBT).then_some(Expectation { position: expected.position, deviation })
     }
 
@@ -211,33 +202,32 @@ impl ObservedTrack {
         Exchange { distance, evidence, .. }: Exchange,
         row: TimedPosition,
         tick_time: f64,
-        known: &RecordingNoise,
         recording: &mut RecordingNoise,
     ) -> Option<(f64, f64, MisfitTreatment)> {
         let treatment = MisfitTreatment::Exchanged;
         other.doubt = None;
         if evidence > 0.0 {
             *self = other;
-            let misfit = self.push(row, tick_time, known, recording);
+            let misfit = self.push(row, tick_time, recording);
             return misfit.or(Some((row.time, distance, treatment)));
         }
-        other.accept(row, tick_time, known, &mut recording.clone());
-        let misfit = self.push(row, tick_time, known, recording);
+        other.accept(row, tick_time, &mut recording.clone());
+        let misfit = self.push(row, tick_time, recording);
         self.doubt = Some(Box::new(Doubt { other, evidence, weight: 0.5, time: row.time, distance, treatment }));
         misfit
     }
 
     /// The motion expected some seconds after the last row, and the standard deviation of a row from it (m).
-    fn expected_after(&self, seconds: f64, known: &RecordingNoise) -> (MotionState, f64) {
-        let level = self.level(known);
+    fn expected_after(&self, seconds: f64) -> (MotionState, f64) {
+        let level = self.level();
         let expected = self.noise.motion(level).expected_after(seconds);
         let noise = level.walk().noise;
         (expected, (expected.variance + noise * noise).sqrt())
     }
 
-    fn fit(&self, row: TimedPosition, tick_time: f64, known: &RecordingNoise) -> Fit {
+    fn fit(&self, row: TimedPosition, tick_time: f64) -> Fit {
         let seconds = (row.time - self.last_time()) * tick_time;
-        let (expected, deviation) = self.expected_after(seconds, known);
+        let (expected, deviation) = self.expected_after(seconds);
         let margin = DEVIATIONS * deviation;
         let distance = expected.distance(row.position);
         let own = self.pace.speed.max(expected.speed());
@@ -265,11 +255,11 @@ impl ObservedTrack {
 
     /// Whether a row is nearer to the continuation of the last doubtful row than to the position expected of the track,
     /// which is `distance` (m) away.
-    fn goes_on(&self, row: TimedPosition, distance: f64, tick_time: f64, known: &RecordingNoise) -> bool {
+    fn goes_on(&self, row: TimedPosition, distance: f64, tick_time: f64) -> bool {
         if distance <= SURPRISE {
             return false;
         }
-        let expected = |time: f64| self.expected_after((time - self.last_time()) * tick_time, known).0.position;
+        let expected = |time: f64| self.expected_after((time - self.last_time()) * tick_time).0.position;
         self.suspects.last().is_some_and(|suspect| {
             let [from, to] = [suspect.row.time, row.time].map(expected);
             let place = [0, 1].map(|axis| suspect.row.position[axis] + to[axis] - from[axis]);
@@ -291,7 +281,6 @@ impl ObservedTrack {
         row: TimedPosition,
         distance: f64,
         tick_time: f64,
-        known: &RecordingNoise,
         recording: &mut RecordingNoise,
     ) -> (f64, MisfitTreatment) {
         let follows = |before: &Suspect| {
@@ -313,7 +302,7 @@ impl ObservedTrack {
         let suspects = std::mem::take(&mut self.suspects);
         *self = Self::beginning(first.row.time, first.row.position);
         for suspect in &suspects[1..] {
-            self.accept(suspect.row, tick_time, known, recording);
+            self.accept(suspect.row, tick_time, recording);
         }
         (first.distance, MisfitTreatment::BegunAnew)
     }
@@ -334,13 +323,13 @@ impl ObservedTrack {
     }
 
     /// Whether the track is too short to believe its speed: a wrong or noisy first row looks like a runner.
-    pub(super) fn is_too_fast(&self, recording: &RecordingNoise, tick_time: f64) -> bool {
+    pub(super) fn is_too_fast(&self, tick_time: f64) -> bool {
         let seconds = self.rows.front().map_or(0.0, |first| (self.last_time() - first.time) * tick_time);
-        seconds < SHORT && self.noise.motion(self.level(recording)).speed() > BRISK
+        seconds < SHORT && self.noise.motion(self.level()).speed() > BRISK
     }
 
-    pub(super) fn level(&self, recording: &RecordingNoise) -> NoiseLevel {
-        self.noise.level(recording)
+    pub(super) fn level(&self) -> NoiseLevel {
+        self.noise.level()
     }
 
     /// Forgets rows that no observation at this time or later needs; a step has this many ticks.
@@ -365,11 +354,11 @@ impl ObservedTrack {
         }
     }
 
-    fn accept(&mut self, row: TimedPosition, tick_time: f64, known: &RecordingNoise, recording: &mut RecordingNoise) {
+    fn accept(&mut self, row: TimedPosition, tick_time: f64, recording: &mut RecordingNoise) {
         self.noise.add(row.position, (row.time - self.last_time()) * tick_time, recording);
         self.leave_out_close(tick_time);
         self.rows.push_back(row);
-        let speed = self.noise.motion(self.level(known)).speed();
+        let speed = self.noise.motion(self.level()).speed();
         let is_old = (row.time - self.pace.time) * tick_time > RECENT;
         if is_old || speed >= self.pace.speed {
             self.pace = FastestSpeed { speed, time: row.time };

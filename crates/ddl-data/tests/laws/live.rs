@@ -1,7 +1,10 @@
 //! Tracks fed frame by frame: refused frames, and forgotten pedestrians.
 
 use ddl_core::PedestrianId;
-use ddl_data::{ClockError, LiveError, LiveTracks, Observation, Recording, RecordingError};
+use ddl_data::{Clock, ClockError, Completeness, LiveError, LiveTracks, Observation, Recording, RecordingError};
+use proptest::prelude::*;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
 
 #[test]
 fn errors_change_nothing() {
@@ -61,4 +64,30 @@ fn no_more_pedestrians_are_kept_than_a_crowd_has() {
     tracks.push(2, crowd(0, 100_000)).unwrap();
     tracks.push(22, crowd(200_000, 100_000)).unwrap();
     assert_eq!(tracks.len(), 200_000);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// What is observed of somebody does not depend on how exactly others are.
+    #[test]
+    fn the_noise_of_others_changes_nothing(seed in any::<u64>(), others in 1..6_i64, rows in 1..40_i64) {
+        let observed = |others: i64| {
+            let mut random = ChaCha8Rng::seed_from_u64(seed);
+            let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(0.1).unwrap())
+                .with_completeness(Completeness::Partial);
+            let mut last = None;
+            for frame in 0..rows {
+                let mut near = |place: f64, noise: f64| [0, 1].map(|_| place + noise * (random.random::<f64>() - 0.5));
+                let own = (PedestrianId(3), near(0.05 * frame as f64, 0.02));
+                let rest: Vec<_> = (0..others).map(|i| (PedestrianId(10 + i), near(1000.0, 1.0))).collect();
+                random = ChaCha8Rng::seed_from_u64(seed.wrapping_add(frame as u64));
+                last = tracks.push(frame, [own].into_iter().chain(rest)).unwrap();
+            }
+            let window = last.unwrap();
+            let i = window.pedestrians().iter().position(|id| id.0 == 3).unwrap();
+            (window.observed(i).to_vec(), window.quality(i), window.other(i).copied())
+        };
+        prop_assert_eq!(observed(0), observed(others));
+    }
 }

@@ -66,16 +66,17 @@ class RecordingNoise:
 
 class TrackNoise:
     def __init__(self, position):
-        self.evidence, self.rows = np.zeros(48), 1
+        self.evidence, self.rows, self.so_far = np.zeros(48), 1, RecordingNoise()
         self.filters = [Filter(position, noise, agility) for noise, agility in zip(NOISE, AGILITY)]
 
-    def level(self, recording):
-        share = min(1, 200 / recording.rows) if recording.rows else 1
-        return int(np.argmax(self.evidence + share * recording.evidence - UNUSUAL))
+    def level(self):
+        share = min(1, 200 / self.so_far.rows) if self.so_far.rows else 1
+        return int(np.argmax(self.evidence + share * self.so_far.evidence - UNUSUAL))
 
     def copied(self):
         same = copy.copy(self)
         same.evidence, same.filters = self.evidence.copy(), list(self.filters)
+        same.so_far = copy.copy(self.so_far)
         return same
 
     def add(self, position, seconds, recording):
@@ -88,8 +89,9 @@ class TrackNoise:
             likelihood = likelihoods(off, variance)
             self.evidence += likelihood
             keep = 1 - 1 / 5000
-            recording.rows = recording.rows * keep + 1
-            recording.evidence = recording.evidence * keep + likelihood
+            for noise in (recording, self.so_far):
+                noise.rows = noise.rows * keep + 1
+                noise.evidence = noise.evidence * keep + likelihood
         self.filters = [one.seen_at(position) for one in expected]
 
 
@@ -129,8 +131,8 @@ class Track:
     def last(self):
         return self.rows[-1][0]
 
-    def expected(self, seconds, known):
-        level = self.noise.level(known)
+    def expected(self, seconds):
+        level = self.noise.level()
         expected = self.noise.filters[level].after(seconds)
         return expected, math.sqrt(expected.cov[0, 0] + NOISE[level] ** 2)
 
@@ -139,9 +141,9 @@ class Track:
         same.rows, same.noise, same.suspects = deque(self.rows), self.noise.copied(), list(self.suspects)
         return same
 
-    def fit(self, time, position, tick, known):
+    def fit(self, time, position, tick):
         seconds = (time - self.last()) * tick
-        expected, deviation = self.expected(seconds, known)
+        expected, deviation = self.expected(seconds)
         margin = 4 * deviation
         distance = apart(position, expected.mean[0])
         own = max(self.fastest[0], expected.speed())
@@ -158,41 +160,41 @@ class Track:
         fit.is_turn = way <= turning * seconds + margin
         return fit
 
-    def goes_on(self, time, position, distance, tick, known):
+    def goes_on(self, time, position, distance, tick):
         """Whether the row continues the doubtful row before it better than the track."""
         if distance <= 0.5 or not self.suspects:
             return False
         at, seen, _ = self.suspects[-1]
-        then, now = (self.expected((t - self.last()) * tick, known)[0].mean[0] for t in (at, time))
+        then, now = (self.expected((t - self.last()) * tick)[0].mean[0] for t in (at, time))
         return apart(seen + now - then, position) < distance
 
-    def push(self, time, position, tick, known, recording):
+    def push(self, time, position, tick, recording):
         if (time - self.last()) * tick > 2:
             self.__init__(time, position)
             return None
-        fit = self.fit(time, position, tick, known)
+        fit = self.fit(time, position, tick)
         distance = fit.distance
-        fits = (fit.is_expected or fit.is_turn) and not self.goes_on(time, position, distance, tick, known)
+        fits = (fit.is_expected or fit.is_turn) and not self.goes_on(time, position, distance, tick)
         doubt, self.doubt = self.doubt, None
         if doubt:
             # Which explanation of the two rows is the likeliest: the one before is wrong, this one is, or none.
-            other = doubt.other.fit(time, position, tick, known)
+            other = doubt.other.fit(time, position, tick)
             before = doubt.evidence + other.likelihood
             right = max(fit.likelihood, WRONG) if fits else WRONG
             if other.is_expected and doubt.told[1] > 0.15 and before > right:
                 self.__dict__ = doubt.other.__dict__
-                self.take(time, position, other, tick, known, recording)
+                self.take(time, position, other, tick, recording)
                 return doubt.told
             weight = fit.doubt((time - self.last()) * tick)
             if fits and before > WRONG and other.likelihood > fit.likelihood and weight:
-                doubt.other.accept(time, position, tick, known, RecordingNoise())
+                doubt.other.accept(time, position, tick, RecordingNoise())
                 doubt.evidence, doubt.weight = before - right, max(doubt.weight, weight)
                 self.suspects = []
-                self.accept(time, position, tick, known, recording)
+                self.accept(time, position, tick, recording)
                 self.doubt = doubt
                 return None
         if fits:
-            self.take(time, position, fit, tick, known, recording)
+            self.take(time, position, fit, tick, recording)
             return None
         # Left out, or the beginning of another track?
         if self.suspects:
@@ -208,34 +210,34 @@ class Track:
         others = self.suspects[1:]
         self.__init__(begin, place)
         for at, seen, _ in others:
-            self.accept(at, seen, tick, known, recording)
+            self.accept(at, seen, tick, recording)
         return time, off, BEGUN_ANEW
 
-    def take(self, time, position, fit, tick, known, recording):
+    def take(self, time, position, fit, tick, recording):
         self.suspects = []
         weight = fit.doubt((time - self.last()) * tick)
         other = self.copied() if weight else None
-        self.accept(time, position, tick, known, recording)
+        self.accept(time, position, tick, recording)
         if weight:
             self.doubt = Doubt(other, WRONG - fit.likelihood, weight, (time, fit.distance, LEFT_OUT))
 
-    def exchange(self, other, evidence, off, time, position, tick, known, recording):
+    def exchange(self, other, evidence, off, time, position, tick, recording):
         other.doubt = None
         told = time, off, EXCHANGED
         if evidence > 0:
             self.__dict__ = other.__dict__
-            return self.push(time, position, tick, known, recording) or told
-        other.accept(time, position, tick, known, RecordingNoise())
-        misfit = self.push(time, position, tick, known, recording)
+            return self.push(time, position, tick, recording) or told
+        other.accept(time, position, tick, RecordingNoise())
+        misfit = self.push(time, position, tick, recording)
         self.doubt = Doubt(other, evidence, 0.5, told)
         return misfit
 
-    def accept(self, time, position, tick, known, recording):
+    def accept(self, time, position, tick, recording):
         self.noise.add(position, (time - self.last()) * tick, recording)
         if len(self.rows) > 1 and (self.rows[-1][0] - self.rows[-2][0]) * tick < 1 / 512:
             self.rows.pop()
         self.rows.append((time, position))
-        speed = self.noise.filters[self.noise.level(known)].speed()
+        speed = self.noise.filters[self.noise.level()].speed()
         if speed >= self.fastest[0] or (time - self.fastest[1]) * tick > 1.2:
             self.fastest = (speed, time)
 
@@ -245,10 +247,10 @@ class Track:
         if self.doubt:
             self.doubt.other.forget_before(time, step)
 
-    def explained(self, time, step, tick, recording):
+    def explained(self, time, step, tick):
         """The likelier observation, its quality, and the weight of the other one."""
-        likelier = self.observed(time, step, tick, recording)
-        other = self.doubt and self.doubt.other.observed(time, step, tick, recording)
+        likelier = self.observed(time, step, tick)
+        other = self.doubt and self.doubt.other.observed(time, step, tick)
         if not likelier or not other:
             return likelier and (*likelier, 0.0)
         weight = self.doubt.weight
@@ -266,11 +268,11 @@ class Track:
         times = [time for time, _ in self.rows][-3:]
         return min(np.diff(times)) if len(times) == 3 else 0
 
-    def observed(self, time, step, tick, recording):
-        level = self.noise.level(recording)
+    def observed(self, time, step, tick):
+        level = self.noise.level()
         is_short = (self.last() - self.rows[0][0]) * tick < 0.35
         if is_short and self.noise.filters[level].speed() > 3.5:
-            return Track(*self.rows[-1]).observed(time, step, tick, recording)
+            return Track(*self.rows[-1]).observed(time, step, tick)
         steps = [time - k * step for k in range(7, -1, -1)]
         on_steps = []
         for at in steps:
@@ -356,14 +358,13 @@ def observe(film):
     windows, misfits, due = [], [], -math.inf
     several, single = 0, 0
     for time, rows in sorted(frames.items()):
-        known = copy.copy(noise)
         rows.sort(key=lambda row: row[0])
         expectations = []
         for who, position in rows:
             if who in tracks:
                 seconds = (time - tracks[who].last()) * tick
                 if seconds <= 1:
-                    expected, deviation = tracks[who].expected(seconds, known)
+                    expected, deviation = tracks[who].expected(seconds)
                     expectations.append((who, position, (expected.mean[0], deviation)))
         exchanged = exchanges(expectations)
         before = {whose: tracks[whose].copied() for whose, *_ in exchanged.values()}
@@ -374,9 +375,9 @@ def observe(film):
                 continue
             if who in exchanged:
                 whose, *found = exchanged[who]
-                misfit = tracks[who].exchange(before[whose], *found, time, position, tick, known, noise)
+                misfit = tracks[who].exchange(before[whose], *found, time, position, tick, noise)
             else:
-                misfit = tracks[who].push(time, position, tick, known, noise)
+                misfit = tracks[who].push(time, position, tick, noise)
             if misfit:
                 misfits.append([misfit[0], who, *misfit[1:]])
             tracks[who].forget_before(time, step)
@@ -397,7 +398,7 @@ def observe(film):
             age = time - track.last()
             oldest = max(track.interval(), step) if max_age is None else max_age
             if last_rows[who] == time or age < oldest:
-                seen = track.explained(time, step, tick, noise)
+                seen = track.explained(time, step, tick)
                 if seen:
                     places, quality, weight = seen
                     window.append([who, *(np.arange(1, 9) @ np.array(places)), *quality, weight])
