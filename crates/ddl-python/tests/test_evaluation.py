@@ -68,7 +68,9 @@ def test_all_forms_of_predictions_and_wrong_ones():
 
     ways = [constant_velocity, lambda past: constant_velocity(past)[:, 0], weighted, baselines.constant_velocity]
     scores = [ddl.evaluate(way, convention="simulated", folds=["doorway"]).mean("min_ade") for way in ways]
-    assert np.allclose(scores, scores[0])
+    assert np.allclose(scores[:3], scores[0])
+    # It sees positions as a forecaster does, which doubts those that people seldom make.
+    assert abs(scores[3] - scores[0]) < 1e-3
     by_fold = ddl.evaluate(
         {"plaza": constant_velocity, "doorway": weighted}, convention="simulated", protocols=["single"]
     )

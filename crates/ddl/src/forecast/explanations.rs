@@ -49,9 +49,12 @@ fn both<'a>(window: &'a Window, likelier: &Walked<'a>, other: &Walked<'a>) -> Wa
         let share = weight.min(OTHER_SHARE);
         let added = of(other, (share * likelier.hypotheses as f64).round() as usize, weight);
         let kept = of(likelier, likelier.hypotheses - added.len(), 1.0 - weight);
+        let first = pairs.len();
         pairs.extend(kept.into_iter().map(|(pair, weight)| (likelier, None, pair, weight)));
         let origin = Some((other.start(i), other.bounds(i)));
         pairs.extend(added.into_iter().map(|(pair, weight)| (other, origin, pair, weight)));
+        // The likeliest comes first, as everywhere.
+        pairs[first..].sort_by(|a, b| b.3.total_cmp(&a.3));
     }
     let steps = |pair: usize| pair * HORIZON..(pair + 1) * HORIZON;
     let paths = pairs.iter().filter_map(|(walked, _, pair, _)| walked.rolled_out.get(steps(*pair)));
