@@ -112,8 +112,8 @@ impl ObservedTrack {
         Self::beginning(row.time, row.position)
     }
 
-    /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. What it shows of
-    /// the noise is added to `recording`. Returns the time of a row that is not where the pedestrian was expected (this one or the one
+    /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. What it shows of the noise is added
+    /// to `recording`. Returns the time of a row that is not where the pedestrian was expected (this one or the one
     /// before), how far off (m) it is, and how it is treated.
     pub(crate) fn push(
         &mut self,
