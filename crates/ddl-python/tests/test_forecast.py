@@ -345,10 +345,9 @@ def test_joint_futures_and_their_answers(forecaster, crossing):
     scene[1, :7] = np.nan
     seen_once = forecaster.forecast(scene, joint=True)
     assert seen_once.unseen[1] == 7 and not np.isnan(seen_once.risk([plan]).pedestrians).any()
-    scene[1] = np.nan
     with pytest.warns(ddl.DoubtWarning, match="do not count: 1"):
-        never_seen = forecaster.forecast(scene, joint=True).risk([plan])
-    assert np.isnan(never_seen.pedestrians[0]).tolist() == [False, True] + 4 * [False]
+        of_whole = forecaster.forecast(scene, joint=True, whole=True).risk([plan])
+    assert np.isnan(of_whole.pedestrians[0]).tolist() == [False, True] + 4 * [False]
     with pytest.raises(ValueError, match="joint=True"):
         forecaster.forecast(scene).futures  # noqa: B018
     with pytest.raises(ValueError, match="sort the rows"):
