@@ -138,7 +138,8 @@ typedef struct ddl_view {
   size_t misfit_count;
   // Segments in the memory of the place; 0 without one.
   size_t remembered;
-  // What is wrong with the memory of the place, or doubtful of the plan, though there is a forecast; null if nothing.
+  // What is wrong with the memory of the place, or doubtful of the plan, though there is a forecast; null if
+  // nothing.
   const char *warning;
 } ddl_view;
 
