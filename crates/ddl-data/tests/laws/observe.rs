@@ -435,14 +435,15 @@ fn a_wrong_position_is_left_out_and_told() {
     }
 }
 
-/// What a live stream sees of recordings with a row at every step is what they hold; nearly nothing is told.
+/// What a live stream sees of recordings with a row at every step is what they hold; nearly nothing is told: of eth,
+/// whose annotations jump by .2 to .7 m, a row of a hundred.
 #[test]
 fn exact_recordings_are_observed_as_they_are() {
     let mut datasets = vec![Dataset::simulated(1)];
     datasets.extend(recordings::load(Convention::Star));
     for recording in datasets.iter().flat_map(Dataset::recordings) {
         let told = recording.observe(recording.live_tracks()).misfits.len();
-        assert!(told <= recording.observations().len() / 500, "{}: {told} told", recording.name());
+        assert!(told <= recording.observations().len() / 100, "{}: {told} told", recording.name());
         let complete = recording.windows(WindowRule::Complete);
         let observed = recording.windows(WindowRule::Observed);
         if told > 0 {
