@@ -44,11 +44,12 @@ fn mass_of_a_disc() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Cells are what the definition says; another order of pedestrians and another place change nothing.
+    /// Cells are what the definition says, to 0.001 for each pedestrian and 0.0005 for its mass. Another order of
+    /// pedestrians and another place change nothing.
     #[test]
     fn laws_of_occupancy(
         starts in vec([-2.0..2.0f64, -2.0..2.0f64], 3), speeds in vec(vec([-1.0..1.0f64, -1.0..1.0f64], 2), 3),
-        scales in vec(0.05..0.8f64, 3), time in 0.0..4.8f64,
+        scales in vec(0.05..0.8f64, 3), time in 0.01..4.8f64,
     ) {
         let area = Area::new([-3.0, -2.5], [2.0, 3.5], 0.25).unwrap();
         let weights = [0.7, 0.3];
@@ -64,7 +65,7 @@ proptest! {
                 };
                 weights[k] * (1.0 - (0..3).map(free).product::<f64>())
             }).sum();
-            prop_assert!((f64::from(found) - expected).abs() < 2e-3, "{found} {expected}");
+            prop_assert!((f64::from(found) - expected).abs() < 4.5e-3, "{found} {expected}");
             prop_assert!((0.0..=1.000_001).contains(&found));
         }
         let shifted: Vec<Position> = starts.iter().rev().map(|at| [at[0] + 10.0, at[1] - 20.0]).collect();
