@@ -1,6 +1,7 @@
 //! Another explanation of the last row of a track, until the next row decides.
 
 use crate::observe::misfit::MisfitTreatment;
+use crate::observe::noise::log_likelihood;
 use crate::observe::track::ObservedTrack;
 
 /// A row so many standard deviations from where it was expected begins to be doubted, and is doubted as far as it can
@@ -66,6 +67,12 @@ pub(super) struct Fit {
 }
 
 impl Fit {
+    /// The same for a row that may be this near (m) to where it was expected.
+    pub(super) fn nearer(self, distance: f64) -> Self {
+        let likelihood = self.likelihood.max(log_likelihood(distance, self.deviation * self.deviation));
+        Self { distance: self.distance.min(distance), likelihood, ..self }
+    }
+
     /// Log-likelihood by which the row is wrong rather than right.
     pub(super) fn evidence(&self) -> f64 {
         WRONG - self.likelihood

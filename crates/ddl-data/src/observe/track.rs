@@ -125,11 +125,13 @@ impl ObservedTrack {
             *self = Self::beginning(row.time, row.position);
             return None;
         }
-        let fit = self.fit(row, tick_time);
-        let fits = (fit.is_expected || fit.is_turn) && !self.goes_on(row, fit.distance, tick_time);
+        let mut fit = self.fit(row, tick_time);
+        let distance = fit.distance;
+        let fits = (fit.is_expected || fit.is_turn) && !self.goes_on(row, distance, tick_time);
         let mut kept = None;
         if let Some(mut doubt) = self.doubt.take() {
             let other = doubt.other.fit(row, tick_time);
+            fit = fit.nearer(self.after_doubtful(&doubt, row, tick_time));
             // This row may be the wrong one.
             let right = if fits { fit.likelihood.max(WRONG) } else { WRONG };
             let likelihood = doubt.evidence + other.likelihood;
@@ -159,7 +161,7 @@ impl ObservedTrack {
             self.take(row, fit, tick_time, recording);
             return None;
         }
-        let (distance, treatment) = self.leave_out(row, fit.distance, tick_time, recording);
+        let (distance, treatment) = self.leave_out(row, distance, tick_time, recording);
         if treatment == MisfitTreatment::LeftOut {
             // Such a row decides nothing about the one before.
             self.doubt = kept;
@@ -265,6 +267,21 @@ impl ObservedTrack {
             let place = [0, 1].map(|axis| suspect.row.position[axis] + to[axis] - from[axis]);
             distance_between(place, row.position) < distance
         })
+    }
+
+    /// How far (m) a row is from where the last ones lead that agree with the doubtful row: on a straight line, or on
+    /// the way of the other explanation, beside it.
+    fn after_doubtful(&self, doubt: &Doubt, row: TimedPosition, tick_time: f64) -> f64 {
+        let straight = self.ahead(row.time).map_or(f64::INFINITY, |ahead| distance_between(ahead, row.position));
+        let is_confirmed = (row.time - doubt.time) * tick_time >= CONFIRMED;
+        let Some(last) = self.rows.back().filter(|_| is_confirmed && doubt.treatment == MisfitTreatment::LeftOut)
+        else {
+            return straight;
+        };
+        let [from, to] = [last.time, row.time]
+            .map(|time| doubt.other.expected_after((time - doubt.other.last_time()) * tick_time).0.position);
+        let beside = [0, 1].map(|axis| last.position[axis] + to[axis] - from[axis]);
+        straight.min(distance_between(beside, row.position))
     }
 
     /// The last two rows, extrapolated to a time.

@@ -417,6 +417,37 @@ fn the_wrong_of_two_rows_is_named() {
     assert!(matches!(tracks.misfits(), [Misfit { tick: 42, .. }]) && tracks.has_left_out(PedestrianId(1)));
 }
 
+/// One pedestrian with such positions until a row, and what is observed then.
+fn walked(rate: f64, last: usize, place: impl Fn(usize) -> Position) -> Window {
+    let clock = Clock::with_frame_time(1.0 / rate).unwrap();
+    let rows = (0..=last).map(|row| Observation::new(row as i64, PedestrianId(1), place(row)));
+    partial(&recording(clock, rows.collect())).windows.pop().unwrap()
+}
+
+/// Somebody who stops, turns back or steps aside at once is where the rows of 0.4 s agree that he is.
+#[test]
+fn rows_that_agree_are_no_longer_doubted() {
+    for rate in [2.5, 5.0, 10.0] {
+        for (speed, then) in [(1.5, [0.0, 0.0]), (1.2, [0.0, 0.0]), (1.5, [-1.5, 0.0]), (1.4, [0.0, 1.4])] {
+            let turned = (4.0 * rate) as usize;
+            let walk = move |row: usize| {
+                let [before, after] = [row.min(turned), row.saturating_sub(turned)].map(|rows| rows as f64 / rate);
+                [speed * before + then[0] * after, then[1] * after]
+            };
+            let rows = turned + (0.8 * rate) as usize;
+            let window = walked(rate, rows, walk);
+            assert!(window.other(0).is_none() && window.own_quality(0).age < 1e-9, "{rate} {speed} {then:?}");
+        }
+        for aside in [0.3, 0.4, 0.6, 0.75, 1.0] {
+            let stepped = (4.0 * rate) as usize;
+            let rows = stepped + (0.4 * rate).ceil() as usize;
+            let window = walked(rate, rows, |row| [0.0, if row < stepped { 0.0 } else { aside }]);
+            let seen = window.observed(0)[OBSERVED - 1];
+            assert!(distance(seen, [0.0, aside]) < 0.05 && window.own_quality(0).age < 1e-9, "{rate} {aside} {seen:?}");
+        }
+    }
+}
+
 #[test]
 fn a_wrong_position_is_left_out_and_told() {
     for rate in [2.5, 7.0, 10.0, 25.0] {

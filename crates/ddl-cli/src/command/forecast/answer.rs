@@ -70,7 +70,7 @@ pub(crate) fn answer(command: &dyn AnsweringCommand, mut state: StreamState) -> 
         write_parts(stream.output.as_deref(), texts)?;
     }
     state.unfamiliar.warning().iter().for_each(tell_note);
-    stream.warn_of_flood(lines, bytes);
+    stream.warn_of_flood(lines, bytes, observed.windows.len());
     observed.estimated().iter().for_each(tell_note);
     Ok(())
 }

@@ -121,14 +121,14 @@ impl StreamOptions {
     }
 
     /// Notes how to reduce large output: thousands of lines on a terminal, or a large file.
-    pub(super) fn warn_of_flood(&self, lines: usize, bytes: usize) {
+    pub(super) fn warn_of_flood(&self, lines: usize, bytes: usize, moments: usize) {
         let on_terminal = file_of(self.output.as_deref()).is_none() && std::io::stdout().is_terminal();
         if on_terminal && lines > LOOKED_THROUGH {
             tell(format_args!(
                 "note: {lines} lines; --output FILE writes them to a file, --last gives those of the last frame \
                  alone, `ddl view` shows forecasts"
             ));
-        } else if bytes > LARGE {
+        } else if bytes > LARGE && moments > 1 {
             tell(format_args!(
                 "note: {} MiB, because all pedestrians are forecast from every frame; --last takes the last alone",
                 bytes >> 20

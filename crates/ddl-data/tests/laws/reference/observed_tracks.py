@@ -113,6 +113,10 @@ class Doubt:
 class Fit:
     """How far a row is from where its pedestrian may be."""
 
+    def may_be(self, distance):
+        self.distance = min(self.distance, distance)
+        self.likelihood = max(self.likelihood, likelihoods(distance, self.deviation**2))
+
     def doubt(self, seconds):
         seldom = ramp(self.distance / self.deviation, 2, 4) * ramp(self.distance, 0.07, 0.15)
         acceleration = (self.distance - 2 * self.deviation) / seconds**2
@@ -168,6 +172,18 @@ class Track:
         then, now = (self.expected((t - self.last()) * tick)[0].mean[0] for t in (at, time))
         return apart(seen + now - then, position) < distance
 
+    def after_doubtful(self, doubt, time, position, tick):
+        """How far the row is from where the last rows lead that agree with the doubtful one."""
+        (t1, p1), off = self.rows[-1], math.inf
+        if len(self.rows) > 1:
+            t0, p0 = self.rows[-2]
+            off = apart(p1 + (p1 - p0) * (time - t1) / (t1 - t0), position)
+        if doubt.told[2] == LEFT_OUT and (time - doubt.told[0]) * tick >= 0.3:
+            other = doubt.other
+            then, now = (other.expected((t - other.last()) * tick)[0].mean[0] for t in (t1, time))
+            off = min(off, apart(p1 + now - then, position))
+        return off
+
     def push(self, time, position, tick, recording):
         if (time - self.last()) * tick > 2:
             self.__init__(time, position)
@@ -179,6 +195,7 @@ class Track:
         if doubt:
             # Which explanation of the two rows is the likeliest: the one before is wrong, this one is, or none.
             other = doubt.other.fit(time, position, tick)
+            fit.may_be(self.after_doubtful(doubt, time, position, tick))
             before = doubt.evidence + other.likelihood
             right = max(fit.likelihood, WRONG) if fits else WRONG
             if other.is_expected and doubt.told[1] > 0.15 and before > right:
