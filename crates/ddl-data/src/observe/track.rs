@@ -261,12 +261,16 @@ impl ObservedTrack {
         if distance <= SURPRISE {
             return false;
         }
-        let expected = |time: f64| self.expected_after((time - self.last_time()) * tick_time).0.position;
         self.suspects.last().is_some_and(|suspect| {
-            let [from, to] = [suspect.row.time, row.time].map(expected);
-            let place = [0, 1].map(|axis| suspect.row.position[axis] + to[axis] - from[axis]);
-            distance_between(place, row.position) < distance
+            distance_between(self.carried(suspect.row, row.time, tick_time), row.position) < distance
         })
+    }
+
+    /// Where somebody seen elsewhere is at a time, who moves as this track is expected to.
+    fn carried(&self, seen: TimedPosition, time: f64, tick_time: f64) -> Position {
+        let [from, to] =
+            [seen.time, time].map(|time| self.expected_after((time - self.last_time()) * tick_time).0.position);
+        [0, 1].map(|axis| seen.position[axis] + to[axis] - from[axis])
     }
 
     /// How far (m) a row is from where the last ones lead that agree with the doubtful row: on a straight line, or on
@@ -274,14 +278,12 @@ impl ObservedTrack {
     fn after_doubtful(&self, doubt: &Doubt, row: TimedPosition, tick_time: f64) -> f64 {
         let straight = self.ahead(row.time).map_or(f64::INFINITY, |ahead| distance_between(ahead, row.position));
         let is_confirmed = (row.time - doubt.time) * tick_time >= CONFIRMED;
-        let Some(last) = self.rows.back().filter(|_| is_confirmed && doubt.treatment == MisfitTreatment::LeftOut)
-        else {
-            return straight;
-        };
-        let [from, to] = [last.time, row.time]
-            .map(|time| doubt.other.expected_after((time - doubt.other.last_time()) * tick_time).0.position);
-        let beside = [0, 1].map(|axis| last.position[axis] + to[axis] - from[axis]);
-        straight.min(distance_between(beside, row.position))
+        match self.rows.back() {
+            Some(&last) if is_confirmed && doubt.treatment == MisfitTreatment::LeftOut => {
+                straight.min(distance_between(doubt.other.carried(last, row.time, tick_time), row.position))
+            }
+            _ => straight,
+        }
     }
 
     /// The last two rows, extrapolated to a time.

@@ -474,7 +474,8 @@ fn exact_recordings_are_observed_as_they_are() {
     datasets.extend(recordings::load(Convention::Star));
     for recording in datasets.iter().flat_map(Dataset::recordings) {
         let told = recording.observe(recording.live_tracks()).misfits.len();
-        assert!(told <= recording.observations().len() / 100, "{}: {told} told", recording.name());
+        let seldom = if recording.name().ends_with("eth") { 100 } else { 500 };
+        assert!(told <= recording.observations().len() / seldom, "{}: {told} told", recording.name());
         let complete = recording.windows(WindowRule::Complete);
         let observed = recording.windows(WindowRule::Observed);
         if told > 0 {

@@ -169,8 +169,12 @@ class Track:
         if distance <= 0.5 or not self.suspects:
             return False
         at, seen, _ = self.suspects[-1]
+        return apart(self.carried(at, seen, time, tick), position) < distance
+
+    def carried(self, at, seen, time, tick):
+        """Where somebody seen elsewhere is later, who moves as this track is expected to."""
         then, now = (self.expected((t - self.last()) * tick)[0].mean[0] for t in (at, time))
-        return apart(seen + now - then, position) < distance
+        return seen + now - then
 
     def after_doubtful(self, doubt, time, position, tick):
         """How far the row is from where the last rows lead that agree with the doubtful one."""
@@ -179,9 +183,7 @@ class Track:
             t0, p0 = self.rows[-2]
             off = apart(p1 + (p1 - p0) * (time - t1) / (t1 - t0), position)
         if doubt.told[2] == LEFT_OUT and (time - doubt.told[0]) * tick >= 0.3:
-            other = doubt.other
-            then, now = (other.expected((t - other.last()) * tick)[0].mean[0] for t in (t1, time))
-            off = min(off, apart(p1 + now - then, position))
+            off = min(off, apart(doubt.other.carried(t1, p1, time, tick), position))
         return off
 
     def push(self, time, position, tick, recording):
