@@ -13,8 +13,7 @@
 //! walked over the observation and how much their velocities differed; it is 0 for people who did not walk together.
 //! All constants are in `energy.json`.
 
-use crate::groups::closeness;
-use ddl_core::Position;
+use ddl_core::{OBSERVED, Position, TIME_STEP, distance};
 use serde::Deserialize;
 use std::sync::LazyLock;
 
@@ -28,15 +27,19 @@ pub(crate) struct Energy {
 }
 
 /// How strongly people keep away from a plan that they see: logarithms by which the odds are divided that they come
-/// within these distances.
+/// close.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Avoidance {
-    /// Metres, ascending.
+    /// Distances between centres that count as close (m), ascending.
     within: [f64; 4],
-    strangers: [f64; 4],
-    /// Members of the group of the pedestrian who follows the plan.
-    companions: [f64; 4],
+    /// By these distances, the share of the logarithm of strangers.
+    shares: [f64; 4],
+    /// Of strangers: at 2 m from the plan and 1 m from others; for each power of e farther from the plan, and from
+    /// others.
+    strangers: [f64; 3],
+    /// Of companions: who kept just the distance that counts as close; for each power of e that they kept more.
+    companions: [f64; 2],
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -63,6 +66,9 @@ struct Together {
     scale: f32,
 }
 
+/// Distances that people keep from each other do not count beyond this, metres.
+pub(crate) const KEPT: f64 = 3.0;
+
 static LEARNED: LazyLock<Option<Energy>> = LazyLock::new(|| serde_json::from_str(include_str!("energy.json")).ok());
 
 /// The energy of one pair of pedestrians.
@@ -77,6 +83,13 @@ pub(crate) struct PairEnergy {
     together: Option<(f32, f32)>,
 }
 
+/// Mean distance (m) of two observed tracks of 8 positions, and the difference of their mean velocities (m/s).
+pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
+    let apart = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).sum::<f64>() / a.len() as f64;
+    let moved = |track: &[Position]| [0, 1].map(|axis| track[OBSERVED - 1][axis] - track[0][axis]);
+    [apart, distance(moved(a), moved(b)) / (TIME_STEP * (OBSERVED - 1) as f64)]
+}
+
 impl Energy {
     /// The constants that come with the program.
     ///
@@ -87,16 +100,27 @@ impl Energy {
         LEARNED.as_ref().expect("energy.json holds the constants")
     }
 
-    /// By what odds are divided that strangers and companions come within a distance (m) of a plan that they see.
-    pub(crate) fn avoidance(&self, within: f64) -> [f64; 2] {
-        let Avoidance { within: at, strangers, companions } = &self.avoidance;
+    /// The logarithm by which the odds are divided that somebody comes within a distance (m) of a plan, who is at this
+    /// distance (m) from it at the moment, and kept this distance (m) from everybody over the observation.
+    pub(crate) fn avoidance_of_stranger(&self, within: f64, present: f64, kept: f64) -> f64 {
+        let Avoidance { within: at, shares, strangers: [strength, of_present, of_kept], .. } = &self.avoidance;
         let next = at.partition_point(|at| *at <= within).min(at.len() - 1);
         let [from, to] = [next.saturating_sub(1), next];
-        let share = if to > from { (within - at[from]) / (at[to] - at[from]) } else { 0.0 };
-        [strangers, companions].map(|logarithms| {
-            let logarithm = logarithms[from] + share.clamp(0.0, 1.0) * (logarithms[to] - logarithms[from]);
-            logarithm.exp()
-        })
+        let along = if to > from { (within - at[from]) / (at[to] - at[from]) } else { 0.0 };
+        let share = shares[from] + along.clamp(0.0, 1.0) * (shares[to] - shares[from]);
+        let [present, kept] = [(present.clamp(0.5, 10.0) / 2.0).ln(), kept.clamp(0.3, KEPT).ln()];
+        (share * (strength + of_present * present + of_kept * kept)).max(0.0)
+    }
+
+    /// The same of somebody who walks with the one who follows the plan, and kept this distance (m) from it.
+    pub(crate) fn avoidance_of_companion(&self, within: f64, kept: f64) -> f64 {
+        let [strength, of_kept] = self.avoidance.companions;
+        (strength + of_kept * (kept / within.max(0.1)).ln().clamp(-0.5, 1.0)).max(0.0)
+    }
+
+    /// The energy of two who walk together with this strength, whose displacements differ by this squared length (m²).
+    pub(crate) fn apart(&self, strength: f32, squared: f32) -> f32 {
+        apart(strength, squared, self.together.scale)
     }
 
     /// Least distance (m) of two paths at which no pair has a conflict.
@@ -132,6 +156,11 @@ impl Energy {
     }
 }
 
+/// The energy of walking together with a strength, of displacements whose difference has this squared length (m²).
+fn apart(strength: f32, squared: f32, scale: f32) -> f32 {
+    strength * (squared / (3.0 * scale * scale)).ln_1p()
+}
+
 impl PairEnergy {
     /// Distance (m) from which paths have no conflict.
     pub(crate) fn reach(&self) -> f32 {
@@ -150,7 +179,7 @@ impl PairEnergy {
     /// The energy of displacements whose difference has this squared length (m²).
     pub(crate) fn apart(&self, squared: f32) -> f32 {
         match self.together {
-            Some((strength, scale)) => strength * (squared / (3.0 * scale * scale)).ln_1p(),
+            Some((strength, scale)) => apart(strength, squared, scale),
             None => 0.0,
         }
     }

@@ -16,7 +16,8 @@ pub(crate) fn energy() -> Energy {
             "strengths": [[0.9, 0.8, 0.7], [0.6, 0.5, 0.4], [0.3, 0.2, 0.1]], "scale": 0.5
         },
         "avoidance": {
-            "within": [0.2, 0.6, 1.0, 2.0], "strangers": [3.0, 1.0, 0.5, 0.0], "companions": [2.0, 0.8, 0.1, 0.0]
+            "within": [0.2, 0.6, 1.0, 2.0], "shares": [3.0, 1.0, 0.5, 0.0], "strangers": [1.0, 0.4, 0.8],
+            "companions": [0.5, 2.0]
         }
     });
     serde_json::from_value(constants).unwrap()

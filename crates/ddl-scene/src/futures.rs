@@ -1,7 +1,7 @@
 //! The joint futures of a scene: the position of each pedestrian in each of them, at any time.
 
 use crate::error::SceneError;
-use crate::groups::groups;
+use crate::groups::Company;
 use crate::mixture::JointScene;
 use crate::parts::ScenePart;
 use crate::plan::Plan;
@@ -23,7 +23,7 @@ pub struct Futures {
     deviations: Vec<f64>,
     /// `[N]`: whether the motion is known, by which somebody may be seen to keep away.
     are_known: Vec<bool>,
-    groups: Vec<Vec<usize>>,
+    company: Company,
     parts: Vec<ScenePart>,
     /// What each pedestrian may do; `None` where these are the futures themselves.
     hypotheses: Option<Forecast>,
@@ -93,12 +93,27 @@ impl Futures {
         let of_other = |i: usize| window.other(i).map_or(0.0, |other| other.quality.deviation);
         let deviations = (0..window.len()).map(|i| window.own_quality(i).deviation.max(of_other(i))).collect();
         let are_known = (0..window.len()).map(|i| !window.quality(i).is_hardly_observed()).collect();
-        Ok(Self { present, deviations, are_known, groups: groups(window), parts, hypotheses, starts, forecast, plan })
+        Ok(Self {
+            present,
+            deviations,
+            are_known,
+            company: Company::of(window),
+            parts,
+            hypotheses,
+            starts,
+            forecast,
+            plan,
+        })
     }
 
     /// [Groups](crate::groups) of pedestrians who walk together, as indices.
     pub fn groups(&self) -> &[Vec<usize>] {
-        &self.groups
+        &self.company.groups
+    }
+
+    /// What the observation tells of people who are near each other.
+    pub(crate) fn company(&self) -> &Company {
+        &self.company
     }
 
     /// The forecast: hypothesis k of every pedestrian is future k.
@@ -128,12 +143,11 @@ impl Futures {
             assert!(places[i].replace(place).is_none(), "pedestrian {i} is given twice");
         }
         let place = |i: &usize| places[*i];
-        let groups = self.groups.iter().map(|group| group.iter().filter_map(place).collect::<Vec<usize>>());
         Self {
             present: pedestrians.iter().map(|&i| self.present[i]).collect(),
             deviations: pedestrians.iter().map(|&i| self.deviations[i]).collect(),
             are_known: pedestrians.iter().map(|&i| self.are_known[i]).collect(),
-            groups: groups.filter(|group| group.len() > 1).collect(),
+            company: self.company.of_pedestrians(pedestrians, place),
             parts: self.parts.iter().filter_map(|part| part.renumbered(|i| place(&i))).collect(),
             starts: if self.starts.is_empty() {
                 Vec::new()

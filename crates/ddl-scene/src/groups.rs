@@ -1,7 +1,9 @@
-//! Who walks together.
+//! Who walks together, and how near people come to each other.
 
-use ddl_core::{OBSERVED, Position, SpatialIndex, TIME_STEP, Window, distance};
-use std::collections::BTreeMap;
+use crate::energy::{Energy, KEPT, closeness};
+use ddl_core::{OBSERVED, SpatialIndex, Window, distance};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Mean distance over the observation below which two may walk together, metres.
 const CLOSE: f64 = 2.2;
@@ -10,11 +12,88 @@ const ALIKE: f64 = 0.35;
 /// Each pedestrian is compared with at most this many others, the nearest ones.
 const MOST_NEIGHBOURS: usize = 16;
 
-/// Mean distance (m) of two observed tracks of 8 positions, and the difference of their mean velocities (m/s).
-pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
-    let apart = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).sum::<f64>() / a.len() as f64;
-    let moved = |track: &[Position]| [0, 1].map(|axis| track[OBSERVED - 1][axis] - track[0][axis]);
-    [apart, distance(moved(a), moved(b)) / (TIME_STEP * (OBSERVED - 1) as f64)]
+/// Two pedestrians who walk together, or may.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Tie {
+    /// Their indices, ascending.
+    pub(crate) pedestrians: [usize; 2],
+    /// How strongly they belong together, divided among partners.
+    pub(crate) strength: f32,
+    /// The least distance (m) over the observation.
+    pub(crate) kept: f64,
+}
+
+/// What the observation tells of people who are near each other.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Company {
+    /// Groups of pedestrians who walk together, as [`groups`].
+    pub(crate) groups: Vec<Vec<usize>>,
+    pub(crate) ties: Vec<Tie>,
+    /// `[N]`: the least distance (m) from anybody over the observation, up to 3 m.
+    pub(crate) kept: Vec<f64>,
+}
+
+impl Company {
+    pub(crate) fn of(window: &Window) -> Self {
+        let energy = Energy::learned();
+        let present = window.positions_at(OBSERVED - 1);
+        let index = SpatialIndex::new(&present);
+        let mut links: Vec<usize> = (0..window.len()).collect();
+        let (mut kept, mut partners) = (vec![KEPT; window.len()], vec![0.0_f32; window.len()]);
+        let near = |i: usize| index.nearest_others(i, present[i], MOST_NEIGHBOURS).into_iter();
+        let pairs: BTreeSet<[usize; 2]> =
+            (0..window.len()).flat_map(|i| near(i).map(move |j| [i.min(j), i.max(j)])).collect();
+        let mut ties = Vec::new();
+        for [i, j] in pairs {
+            if [i, j].iter().any(|&one| window.quality(one).is_hardly_observed()) {
+                continue;
+            }
+            let [a, b] = [i, j].map(|one| window.observed(one));
+            let least = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).fold(f64::INFINITY, f64::min);
+            for one in [i, j] {
+                kept[one] = kept[one].min(least);
+            }
+            let [apart, velocities] = closeness(a, b);
+            if apart < CLOSE && velocities < ALIKE {
+                link(&mut links, i, j);
+            }
+            let strength = energy.strength(a, b);
+            if strength > 0.0 {
+                partners[i] += 1.0;
+                partners[j] += 1.0;
+                ties.push(Tie { pedestrians: [i, j], strength, kept: least });
+            }
+        }
+        for Tie { pedestrians, strength, .. } in &mut ties {
+            let [a, b] = pedestrians.map(|one| partners[one]);
+            *strength /= a.max(b).sqrt();
+        }
+        let groups = linked(&mut links).into_values().filter(|members| members.len() > 1).collect();
+        Self { groups, ties, kept }
+    }
+
+    /// Of some of the pedestrians, `[N]` of them, who have these places among them.
+    pub(crate) fn of_pedestrians(&self, pedestrians: &[usize], place: impl Fn(&usize) -> Option<usize>) -> Self {
+        let groups = self.groups.iter().map(|group| group.iter().filter_map(&place).collect::<Vec<usize>>());
+        let tie = |tie: &Tie| {
+            let [i, j] = [place(&tie.pedestrians[0])?, place(&tie.pedestrians[1])?];
+            Some(Tie { pedestrians: [i.min(j), i.max(j)], ..*tie })
+        };
+        Self {
+            groups: groups.filter(|group| group.len() > 1).collect(),
+            ties: self.ties.iter().filter_map(tie).collect(),
+            kept: pedestrians.iter().map(|&i| self.kept[i]).collect(),
+        }
+    }
+
+    /// Whoever walks with a pedestrian, or may.
+    pub(crate) fn with(&self, ego: usize) -> impl Iterator<Item = (usize, &Tie)> {
+        self.ties.iter().filter_map(move |tie| match tie.pedestrians {
+            [one, other] if one == ego => Some((other, tie)),
+            [other, one] if one == ego => Some((other, tie)),
+            _ => None,
+        })
+    }
 }
 
 /// Groups of at least two pedestrians of a window who walk together, as indices in ascending order: linked by pairs
@@ -23,21 +102,7 @@ pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
 /// Two who stand beside each other count as a group, too; nobody who is hardly observed does.
 #[must_use]
 pub fn groups(window: &Window) -> Vec<Vec<usize>> {
-    let present = window.positions_at(OBSERVED - 1);
-    let index = SpatialIndex::new(&present);
-    let mut links: Vec<usize> = (0..window.len()).collect();
-    for (i, &place) in present.iter().enumerate() {
-        for j in index.nearest_others(i, place, MOST_NEIGHBOURS) {
-            if [i, j].iter().any(|&one| window.quality(one).is_hardly_observed()) {
-                continue;
-            }
-            let [apart, velocities] = closeness(window.observed(i), window.observed(j));
-            if apart < CLOSE && velocities < ALIKE {
-                link(&mut links, i, j);
-            }
-        }
-    }
-    linked(&mut links).into_values().filter(|members| members.len() > 1).collect()
+    Company::of(window).groups
 }
 
 /// Links two members, and all who are linked to them; at first each is linked to itself.

@@ -20,7 +20,11 @@ mod mass;
 #[cfg(test)]
 mod tests;
 
-use crate::{error::SceneError, futures::Futures, parts::ScenePart};
+use crate::{
+    error::SceneError,
+    futures::Futures,
+    parts::{PartMember, ScenePart},
+};
 use ddl_core::{HORIZON, Position, TIME_STEP};
 use mass::MassTable;
 use rayon::prelude::*;
@@ -241,9 +245,11 @@ fn free_of_part(area: &Area, row: usize, part: &ScenePart, bodies: &[OccupyingBo
         }
         if !both.is_empty() {
             let place = area.centre([column, row]);
-            let of = |body: &OccupyingBody| (0..body.places.len()).map(|h| [1.0 - body.mass(h, place)]).collect();
-            let away: Vec<Vec<[f64; 1]>> = both.iter().map(|body| of(body)).collect();
-            let [occupied] = part.somebody(both.iter().zip(&away).map(|(body, away)| (body.pedestrian, &away[..])));
+            let of = |body: &&OccupyingBody| {
+                let away = (0..body.places.len()).map(|h| (h, [1.0 - body.mass(h, place)]));
+                PartMember::new(body.pedestrian, away, Vec::new())
+            };
+            let [occupied] = part.somebody(&both.iter().map(of).collect::<Vec<_>>());
             *free *= 1.0 - occupied;
         }
     }

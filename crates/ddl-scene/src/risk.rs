@@ -12,22 +12,30 @@
 //! P(somebody)             = 1 - prod (1 - P(somebody of the part))
 //! ```
 //!
+//! Who sees a plan responds to it (`response.rs`): odds of a pedestrian are divided, and companions of who follows the
+//! plan have other weights of their hypotheses and samples.
+//!
 //! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
 //! results depend on nothing but their input. Less than 1/64 of one hypothesis may count as 0.
 
 mod course;
 mod crowd;
 mod quadrature;
+mod response;
 #[cfg(test)]
 mod tests;
+mod way;
 
-use crate::{energy::Energy, error::SceneError, futures::Futures, plan::Plan};
+use crate::{error::SceneError, futures::Futures, parts::PartMember, plan::Plan};
 use course::legs;
-use crowd::{CrowdAtRisk, Sweep};
+use crowd::{Closeness, CrowdAtRisk, Hits, Sweep};
 use ddl_core::HORIZON;
 use quadrature::DEVIATIONS;
 pub(crate) use quadrature::probability;
 use rayon::prelude::*;
+use response::{PlanResponse, Response, responses};
+use std::array::from_fn;
+use std::borrow::Cow;
 
 /// Probabilities that somebody comes within a distance of the edge of a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,22 +63,22 @@ impl Futures {
     /// For each plan, how likely somebody comes within `within` metres of its edge, if nobody sees it. The pedestrian
     /// `ego` who follows the plan, if there is one, is no risk to itself.
     ///
-    /// A thousand plans among 25 pedestrians with 20 hypotheses take some 30 ms on one core.
+    /// A thousand plans among 25 pedestrians with 20 hypotheses take some 60 ms on one core.
     /// The result does not depend on the number of threads, nor on which other plans there are.
     ///
     /// # Errors
     /// `within` is negative or not finite; the forecast has no spread.
     pub fn risks(&self, plans: &[Plan], within: f64, ego: Option<usize>) -> Result<Vec<Risk>, SceneError> {
-        self.risks_with(plans, within, |_| vec![1.0; self.pedestrians()], ego)
+        self.risks_with(plans, within, &[], ego)
     }
 
     /// [`risks`](Self::risks), where pedestrians see the plan and keep away from it as people do from each other.
     ///
-    /// The odds that somebody comes close are divided by a factor learned from recordings in which a pedestrian plays
-    /// the robot: a large one, and a small one for those who walk with the `ego`. The factor depends on the distance
-    /// between centres, which is `within` plus the largest radius of the plan; from 1.5 m on it is 1. Pedestrians who
-    /// are close at the moment itself, or may be, keep the probability of that, and those seen for the first time
-    /// theirs.
+    /// The odds that a stranger comes close are divided by a factor learned from recordings in which a pedestrian plays
+    /// the robot. Those who walk with the `ego` go on as the plan does, and keep the distance that they kept. The
+    /// factor depends on the distance between centres, which is `within` plus the largest radius of the plan; of
+    /// strangers it is 1 from 1.5 m on. Pedestrians who are close at the moment itself, or may be, keep the probability
+    /// of that, and those seen for the first time theirs.
     ///
     /// # Errors
     /// As [`risks`](Self::risks); the pedestrians were given a plan, which they respond to already.
@@ -78,24 +86,14 @@ impl Futures {
         if self.plan().is_some() {
             return Err(SceneError::PlanGiven);
         }
-        let group = ego.and_then(|ego| self.groups().iter().find(|group| group.contains(&ego)));
-        let odds = |plan: &Plan| {
-            let [strangers, companions] = Energy::learned().avoidance(within + plan.largest_radius());
-            let odds_of = |i: usize| if self.is_known(i) { 1.0 / strangers } else { 1.0 };
-            let mut odds: Vec<f64> = (0..self.pedestrians()).map(odds_of).collect();
-            for &companion in group.into_iter().flatten() {
-                odds[companion] = 1.0 / companions;
-            }
-            odds
-        };
-        self.risks_with(plans, within, odds, ego)
+        self.risks_with(plans, within, &responses(self, ego), ego)
     }
 
     fn risks_with(
         &self,
         plans: &[Plan],
         within: f64,
-        odds: impl Fn(&Plan) -> Vec<f64> + Sync,
+        responses: &[Response],
         ego: Option<usize>,
     ) -> Result<Vec<Risk>, SceneError> {
         if !(within >= 0.0 && within.is_finite()) {
@@ -106,7 +104,11 @@ impl Futures {
             });
         }
         let crowd = CrowdAtRisk::new(self)?;
-        Ok(plans.par_iter().map(|plan| self.risk(&crowd, &crowd.sweep(plan, within), &odds(plan), ego)).collect())
+        let risk = |plan: &Plan| {
+            let respond = |i: usize| responses.get(i).unwrap_or(&Response::None).to(plan, within, self, i);
+            self.risk(&crowd, &crowd.sweep(plan, within), respond, ego)
+        };
+        Ok(plans.par_iter().map(risk).collect())
     }
 
     /// For each plan, the expected least distance of pedestrians from its edge if they do not see it, computed with the
@@ -119,18 +121,33 @@ impl Futures {
         Ok(plans.par_iter().map(|plan| self.clearance(&crowd, plan)).collect())
     }
 
-    fn risk(&self, crowd: &CrowdAtRisk, sweep: &Sweep, odds: &[f64], ego: Option<usize>) -> Risk {
+    fn risk(
+        &self,
+        crowd: &CrowdAtRisk,
+        sweep: &Sweep,
+        respond: impl Fn(usize) -> PlanResponse,
+        ego: Option<usize>,
+    ) -> Risk {
         let mut pedestrians = vec![0.0; self.pedestrians()];
         let mut somebody = [0.0; 2 * HORIZON];
         let near = crowd.near(sweep).into_iter().filter(|&i| Some(i) != ego);
         for (part, members) in crowd.by_part(near) {
-            let away = members.into_iter().filter_map(|i| Some((i, staying_away(crowd, sweep, i, odds[i])?)));
-            let away: Vec<(usize, Vec<StayingAway>)> = away.collect();
-            for (i, away) in &away {
-                let of_each = crowd.shares[*i].iter().zip(away);
-                pedestrians[*i] = of_each.map(|(share, away)| share * (1.0 - away[2 * HORIZON - 1])).sum();
+            let member = |i: usize| {
+                let PlanResponse { factors, odds } = respond(i);
+                let hits = crowd.hits(sweep, i, &reweighted(&crowd.shares[i], &factors))?;
+                let reduced = reduction(&hits, odds);
+                let steps = hits.steps.map(&reduced);
+                let away = hits.of_hypotheses.iter().map(|(k, steps)| (*k, steps.map(|hits| 1.0 - reduced(hits))));
+                Some((steps, PartMember::new(i, away, factors)))
+            };
+            let (steps, members): (Vec<StepProbabilities>, Vec<_>) = members.into_iter().filter_map(member).unzip();
+            for (one, steps) in members.iter().zip(&steps) {
+                pedestrians[one.pedestrian] = steps[2 * HORIZON - 1];
             }
-            let of_part = self.parts()[part].somebody(away.iter().map(|(i, away)| (*i, &away[..])));
+            let of_part = match steps[..] {
+                [of_one] => of_one,
+                _ => self.parts()[part].somebody(&members),
+            };
             for (sum, of_part) in somebody.iter_mut().zip(of_part) {
                 *sum += of_part - *sum * of_part;
             }
@@ -139,7 +156,7 @@ impl Futures {
         for probability in pedestrians.iter_mut().chain(&mut somebody) {
             *probability = probability.min(1.0);
         }
-        let [steps, until] = [0, HORIZON].map(|from| std::array::from_fn(|step| somebody[from + step]));
+        let [steps, until] = [0, HORIZON].map(|from| from_fn(|step| somebody[from + step]));
         Risk { total: somebody[2 * HORIZON - 1], pedestrians, steps, until }
     }
 
@@ -162,9 +179,12 @@ impl Futures {
         let least = |i: usize| distances[i].as_flattened().iter().copied().fold(f64::INFINITY, f64::min);
         let near = (0..self.pedestrians()).filter(|&i| least(i) < width * CELLS as f64);
         for (part, members) in crowd.by_part(near) {
-            let farther_of = |i: usize| distances[i].iter().map(|distances| farther_shares(distances, width)).collect();
-            let all: Vec<(usize, Vec<[f64; CELLS]>)> = members.into_iter().map(|i| (i, farther_of(i))).collect();
-            let nearer = self.parts()[part].somebody(all.iter().map(|(i, farther)| (*i, &farther[..])));
+            let farther_of = |i: usize| {
+                let of_each = distances[i].iter().map(|distances| farther_shares(distances, width)).enumerate();
+                PartMember::new(i, of_each, Vec::new())
+            };
+            let all: Vec<PartMember<CELLS>> = members.into_iter().map(farther_of).collect();
+            let nearer = self.parts()[part].somebody(&all);
             for (farther, nearer) in farther.iter_mut().zip(nearer) {
                 *farther *= 1.0 - nearer;
             }
@@ -191,26 +211,22 @@ fn farther_shares(distances: &[f64; DEVIATIONS], width: f64) -> [f64; CELLS] {
     shares
 }
 
-/// Probabilities of a hypothesis to stay away during each step, then until its end.
-type StayingAway = [f64; 2 * HORIZON];
+/// Probabilities during each step, then until its end.
+type StepProbabilities = [f64; 2 * HORIZON];
 
-/// Of each hypothesis of pedestrian `i`; `None` if all surely do. People who are close already cannot keep away. The
-/// odds that the others come close on a hypothesis are multiplied by a factor; the probability that they do so by an
-/// earlier step falls in proportion.
-fn staying_away(crowd: &CrowdAtRisk, sweep: &Sweep, i: usize, odds: f64) -> Option<Vec<StayingAway>> {
-    let mut some = false;
-    let of_hypothesis = |(h, share): (usize, &f64)| {
-        let mut away = [1.0; 2 * HORIZON];
-        let Some(hits) = (*share > 0.0).then(|| crowd.hits(sweep, i, h)).flatten() else { return away };
-        some = true;
-        let [close_now, close_later] = hits.until[HORIZON - 1];
-        let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
-        let reduction = odds / (1.0 - of_others + of_others * odds);
-        for (away, [now, later]) in away.iter_mut().zip(hits.steps.iter().chain(&hits.until)) {
-            *away -= now + reduction * later;
-        }
-        away
-    };
-    let all = crowd.shares[i].iter().enumerate().map(of_hypothesis).collect();
-    some.then_some(all)
+/// What remains of probabilities if a pedestrian multiplies its odds to come close by a factor. Whoever is close at the
+/// moment itself cannot keep away; the probability of the others falls in proportion, by each step and on each
+/// hypothesis.
+fn reduction(hits: &Hits, odds: f64) -> impl Fn(Closeness) -> f64 {
+    let [close_now, close_later] = hits.steps[2 * HORIZON - 1];
+    let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
+    let reduction = odds / (1.0 - of_others + of_others * odds);
+    move |[now, later]| now + reduction * later
+}
+
+/// Probabilities times factors, divided by their sum.
+fn reweighted<'a>(shares: &'a [f64], factors: &[f64]) -> Cow<'a, [f64]> {
+    let products = || shares.iter().zip(factors).map(|(share, factor)| share * factor);
+    let total: f64 = products().sum();
+    if total > 0.0 { products().map(|product| product / total).collect() } else { shares.into() }
 }

@@ -74,17 +74,26 @@ fn strengths_by_hand() {
 
 #[test]
 fn avoidance_by_hand() {
-    let energy = energy();
-    // Logarithms for strangers and companions, on straight lines.
-    for [within, strangers, companions] in
-        [[0.0, 3.0, 2.0], [0.3, 2.5, 1.7], [0.9, 0.625, 0.275], [1.5, 0.25, 0.05], [9.0, 0.0, 0.0]]
-    {
-        let [a, b] = energy.avoidance(within).map(f64::ln);
-        assert!((a - strangers).abs() + (b - companions).abs() < 1e-9, "{within}: {a} {b}");
+    let (energy, e) = (energy(), std::f64::consts::E);
+    // Within, present distance, distance kept from others (m), logarithm.
+    for [within, present, kept, expected] in [
+        [0.0, 2.0, 1.0, 3.0],
+        [0.4, 2.0, 1.0, 2.0],
+        [0.8, 2.0 * e, 1.0, 0.75 * 1.4],
+        [0.6, 2.0, e, 1.8],
+        [0.6, 2.0, 9.0, 1.0 + 0.8 * 3.0_f64.ln()],
+        [1.5, 99.0, 1.0, 0.25 * (1.0 + 0.4 * 5.0_f64.ln())],
+        [0.6, 0.1, 0.1, 0.0],
+        [9.0, 2.0, 1.0, 0.0],
+    ] {
+        let found = energy.avoidance_of_stranger(within, present, kept);
+        assert!((found - expected).abs() < 1e-9, "{within} {present} {kept}: {found}");
     }
-    // Strangers keep away more than companions, and farther ones less.
-    for within in [0.3, 0.5, 0.8, 1.2] {
-        let [strangers, companions] = Energy::learned().avoidance(within);
-        assert!(strangers > companions && companions >= 1.0);
+    // Within, distance kept from the ego, logarithm.
+    for [within, kept, expected] in
+        [[0.5, 0.5, 0.5], [0.5, 0.5 * e, 2.5], [1.0, 9.0, 2.5], [0.5, 0.4, 0.5 + 2.0 * 0.8_f64.ln()], [0.5, 0.0, 0.0]]
+    {
+        let found = energy.avoidance_of_companion(within, kept);
+        assert!((found - expected).abs() < 1e-9, "{within} {kept}: {found}");
     }
 }

@@ -98,7 +98,10 @@ impl Plan {
             let gaps = others.clone().flat_map(|(_, one)| places.iter().map(move |at| distance(place(*at), *one)));
             gaps.fold(f64::INFINITY, f64::min)
         };
-        let [far, far_if_exchanged] = [false, true].map(nearest);
+        // Most plans are beside the first pedestrian that is looked at.
+        let near = |one: &Position| places.iter().any(|at| distance(*at, *one) <= ASIDE);
+        let is_near = others.clone().any(|(_, one)| near(one));
+        let [far, far_if_exchanged] = if is_near { [0.0; 2] } else { [false, true].map(nearest) };
         let is_exchanged = far > ASIDE && far_if_exchanged < AMONG;
         let start = self.at(0.0).position;
         let from_ego = |start: Position| ego.map_or(0.0, |ego| distance(start, people[ego]));

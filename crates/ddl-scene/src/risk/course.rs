@@ -1,5 +1,7 @@
 //! A plan in legs: everything moves on a straight line during each, with one radius.
 
+#![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
+
 use crate::plan::Plan;
 use ddl_core::{HORIZON, Position, TIME_STEP};
 
@@ -51,7 +53,7 @@ pub(super) struct LegApproach {
 
 impl CourseLeg {
     /// Of a pedestrian with this path and these scales, at the moment and 12 steps after it.
-    #[inline]
+    #[inline(always)]
     pub(super) fn approach(&self, path: &[Position; HORIZON + 1], scales: &[f64; HORIZON + 1]) -> LegApproach {
         let [from, to] = [path[self.step], path[self.step + 1]];
         let [least, most] = [scales[self.step], scales[self.step + 1]];

@@ -1,17 +1,18 @@
 //! Which deviations of a pedestrian come close to a plan.
 
-use super::course::{CourseLeg, LegApproach, legs};
-use super::quadrature::{DEVIATIONS, Quadrature};
+#![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
+
+use super::course::{CourseLeg, legs};
+use super::quadrature::{DEVIATIONS, DeviationBlocks, Quadrature};
+use super::way::PedestrianWays;
 use crate::{error::SceneError, futures::Futures, plan::Plan};
 use ddl_core::{HORIZON, Position, between, bounds};
+use ddl_simd::{Dispatch, Kernel, LANES, Simd};
 use std::array::from_fn;
 use std::collections::BTreeMap;
 
 /// What `f32` may be wrong by, as a share of the size of a coordinate.
 const ROUNDING: f64 = 1e-6;
-/// Deviations are looked at in blocks that fill vectors.
-const BLOCK: usize = 8;
-const BITS: [u32; BLOCK] = [1, 2, 4, 8, 16, 32, 64, 128];
 
 /// The paths of a scene, arranged for the search.
 #[derive(Debug)]
@@ -26,39 +27,12 @@ pub(super) struct CrowdAtRisk {
     /// `[N]`: around those from all hypotheses.
     outer_rings: Vec<Rings>,
     origin: Position,
-    /// `[K]`: the deviations from each hypothesis.
-    deviations: Vec<Deviations>,
+    /// `[K]`: the deviations from each hypothesis, exactly and in blocks.
+    deviations: Vec<(Quadrature, DeviationBlocks)>,
     /// `[N]`: the part of the scene that each pedestrian belongs to.
     parts: Vec<usize>,
     /// `[N][K]`: probabilities of the hypotheses.
     pub(super) shares: Vec<Vec<f64>>,
-}
-
-#[derive(Debug)]
-struct Deviations {
-    exact: Quadrature,
-    blocks: [CrowdBlock; DEVIATIONS / BLOCK],
-}
-
-impl Deviations {
-    fn of_hypothesis(k: usize) -> Self {
-        let exact = Quadrature::of_hypothesis(k);
-        let block = |b: usize| {
-            let [x, y] = [&exact.x, &exact.y].map(|all| from_fn(|j| all[b * BLOCK + j] as f32));
-            let most = f32::hypot(x[BLOCK - 1], y[BLOCK - 1]) * (1.0 + ROUNDING as f32);
-            CrowdBlock { x, y, most }
-        };
-        Self { blocks: from_fn(block), exact }
-    }
-}
-
-/// Deviations one after the other, in scales.
-#[derive(Debug)]
-struct CrowdBlock {
-    x: [f32; BLOCK],
-    y: [f32; BLOCK],
-    /// None of them is longer.
-    most: f32,
 }
 
 /// Discs in which somebody stays during each step: x and y (m from the origin of the crowd), radius (m).
@@ -72,13 +46,16 @@ pub(super) struct Sweep {
     rings: Rings,
 }
 
-/// Shares of deviations that come close: of those that are close at the moment itself, and of the others.
+/// Probabilities that a pedestrian comes close: where it is close at the moment itself, and otherwise.
+pub(super) type Closeness = [f64; 2];
+
+/// How likely a pedestrian comes close to a plan.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Hits {
-    /// During each step.
-    pub(super) steps: [[f64; 2]; HORIZON],
-    /// By its end.
-    pub(super) until: [[f64; 2]; HORIZON],
+    /// During each step, then until its end.
+    pub(super) steps: [Closeness; 2 * HORIZON],
+    /// The same on each hypothesis on which it comes close.
+    pub(super) of_hypotheses: Vec<(usize, [Closeness; 2 * HORIZON])>,
 }
 
 impl CrowdAtRisk {
@@ -101,10 +78,15 @@ impl CrowdAtRisk {
         };
         let paths: Vec<_> = pairs().map(path).collect();
         let origin = futures.present(0);
-        let deviations: Vec<Deviations> = (0..count).map(Deviations::of_hypothesis).collect();
+        let of_hypothesis = |k| {
+            let exact = Quadrature::of_hypothesis(k);
+            let blocks = DeviationBlocks::of(&exact);
+            (exact, blocks)
+        };
+        let deviations: Vec<_> = (0..count).map(of_hypothesis).collect();
         let around = |i: usize, of: &[usize]| {
             let path = |k: usize| &paths[k * n + i];
-            let farthest = of.iter().map(|&k| deviations[k].exact.farthest()).fold(0.0, f64::max);
+            let farthest = of.iter().map(|&k| deviations[k].0.farthest()).fold(0.0, f64::max);
             rings(origin, |step| {
                 let margin = farthest * scales[i][step].max(scales[i][step + 1]);
                 (of.iter().flat_map(move |&k| [path(k)[step], path(k)[step + 1]]), margin)
@@ -147,50 +129,17 @@ impl CrowdAtRisk {
         (0..self.n).filter(|i: &usize| near(&self.outer_rings[*i], &sweep.rings).is_some()).collect()
     }
 
-    /// The deviations of pedestrian `i` that come close from its hypothesis `k`; `None` if none do.
-    pub(super) fn hits(&self, sweep: &Sweep, i: usize, k: usize) -> Option<Hits> {
-        let pair = k * self.n + i;
-        let near = near(&self.rings[pair], &sweep.rings)?;
-        let (mut now, mut first) = ([0; HORIZON], 0);
-        for (l, leg) in sweep.legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
-            let LegApproach { offsets, scales } = leg.approach(&self.paths[pair], &self.scales[i]);
-            let reach = sweep.within + leg.radius;
-            now[leg.step] |= self.close(k, offsets, scales, reach);
-            if l == 0 && now[0] > 0 {
-                first = self.close(k, [offsets[0]; 2], [scales[0]; 2], reach);
-            }
-        }
-        let mut so_far = 0;
-        let until = now.map(|now: u64| {
-            so_far |= now;
-            so_far
-        });
-        let share = |bits: u64| f64::from(bits.count_ones()) / DEVIATIONS as f64;
-        let [steps, until] = [now, until].map(|steps| steps.map(|bits| [share(bits & first), share(bits & !first)]));
-        (so_far > 0).then_some(Hits { steps, until })
-    }
-
-    /// The deviations from a hypothesis that come closer during a leg than this distance, one bit for each.
-    fn close(&self, k: usize, offsets: [Position; 2], scales: [f64; 2], reach: f64) -> u64 {
-        let offsets = offsets.map(|offset| offset.map(|number| number as f32));
-        let way = PedestrianWay::new(offsets, scales, reach);
-        let nearest = way.nearest() * (1.0 - 4.0 * ROUNDING as f32);
-        let most = way.s + way.ds.max(0.0);
-        let mut close = 0;
-        // The outermost deviations first: further inside none come close if these stay away.
-        for (b, block) in self.deviations[k].blocks.iter().enumerate().rev() {
-            let reach = way.r + most * block.most;
-            if nearest > reach * reach {
-                break;
-            }
-            close |= u64::from(way.close(block)) << (b * BLOCK);
-        }
-        close
+    /// How likely pedestrian `i`, whose hypotheses have these probabilities, comes close; `None` if surely not.
+    pub(super) fn hits(&self, sweep: &Sweep, i: usize, shares: &[f64]) -> Option<Hits> {
+        let hits = Hits { steps: [[0.0; 2]; 2 * HORIZON], of_hypotheses: Vec::new() };
+        let mut search = CrowdSearch { crowd: self, sweep, pedestrian: i, shares, hits };
+        Dispatch::detect().run(&mut search);
+        (!search.hits.of_hypotheses.is_empty()).then_some(search.hits)
     }
 
     /// The least distance (m) of each deviation of pedestrian `i` on its hypothesis `k` from the edge of a plan.
     pub(super) fn distances(&self, legs: &[CourseLeg], i: usize, k: usize) -> [f64; DEVIATIONS] {
-        let Quadrature { x, y } = &self.deviations[k].exact;
+        let Quadrature { x, y } = &self.deviations[k].0;
         let mut least = [f64::INFINITY; DEVIATIONS];
         for leg in legs {
             let approach = leg.approach(&self.paths[k * self.n + i], &self.scales[i]);
@@ -202,50 +151,66 @@ impl CrowdAtRisk {
     }
 }
 
-/// A leg in `f32`: from the plan to a pedestrian and its scale, where it begins and what is added until its end; the
-/// distance that counts as close.
-struct PedestrianWay {
-    x: f32,
-    y: f32,
-    s: f32,
-    r: f32,
-    dx: f32,
-    dy: f32,
-    ds: f32,
+/// The search for the deviations of one pedestrian that come close.
+struct CrowdSearch<'a> {
+    crowd: &'a CrowdAtRisk,
+    sweep: &'a Sweep,
+    pedestrian: usize,
+    shares: &'a [f64],
+    hits: Hits,
 }
 
-impl PedestrianWay {
-    fn new([[x, y], end]: [[f32; 2]; 2], scales: [f64; 2], reach: f64) -> Self {
-        let [s, s1] = scales.map(|scale| scale as f32);
-        Self { x, y, s, r: reach as f32, dx: end[0] - x, dy: end[1] - y, ds: s1 - s }
-    }
-
-    /// The least squared distance of the path itself.
-    fn nearest(&self) -> f32 {
-        let &Self { x, y, dx, dy, .. } = self;
-        let share = -(x * dx + y * dy) / (dx * dx + dy * dy + f32::MIN_POSITIVE);
-        let share = share.clamp(0.0, 1.0);
-        let [x, y] = [x + share * dx, y + share * dy];
-        x * x + y * y
-    }
-
-    /// The deviations of a block that come close, one bit for each.
-    #[expect(clippy::needless_bitwise_bool, reason = "branches would keep the loop out of vectors")]
-    fn close(&self, block: &CrowdBlock) -> u32 {
-        let mut bits = [0; BLOCK];
-        for j in 0..BLOCK {
-            let [zx, zy] = [block.x[j], block.y[j]];
-            let [x, y] = [self.x + self.s * zx, self.y + self.s * zy];
-            let [dx, dy] = [self.dx + self.ds * zx, self.dy + self.ds * zy];
-            // Close where a u^2 + 2 b u + c <= 0 for a share u of the leg.
-            let a = dx * dx + dy * dy;
-            let b = x * dx + y * dy;
-            let c = x * x + y * y - self.r * self.r;
-            let on_the_way = (b < 0.0) & (a + b > 0.0) & (a * c <= b * b);
-            let is_close = (c <= 0.0) | (a + 2.0 * b + c <= 0.0) | on_the_way;
-            bits[j] = if is_close { BITS[j] } else { 0 };
+impl Kernel for &mut CrowdSearch<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Sweep { legs, within, rings } = self.sweep;
+        let i = self.pedestrian;
+        let scales = &self.crowd.scales[i];
+        let mut ways = PedestrianWays::default();
+        for (k, share) in self.shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+            let pair = k * self.crowd.n + i;
+            let Some(near) = near(&self.crowd.rings[pair], rings) else { continue };
+            let blocks = &self.crowd.deviations[k].1;
+            let (mut during, mut first, mut until) = ([0_u64; HORIZON], 0, 0);
+            for (chunk, legs) in legs.chunks(LANES).enumerate() {
+                for (lane, leg) in legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
+                    ways.set(lane, leg.approach(&self.crowd.paths[pair], scales), within + leg.radius);
+                }
+                let nearest = ways.nearest(simd);
+                for (lane, leg) in legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
+                    let way = ways.way(lane);
+                    let bits = way.close(simd, blocks, nearest[lane]);
+                    during[leg.step] |= bits;
+                    until |= bits;
+                    if (chunk, lane) == (0, 0) && bits > 0 {
+                        first = way.at_start().close(simd, blocks, 0.0);
+                    }
+                }
+            }
+            if until > 0 {
+                self.hits.add(k, *share, during, first);
+            }
         }
-        bits.iter().fold(0, |all, bit| all | bit)
+    }
+}
+
+impl Hits {
+    /// Adds the deviations from hypothesis `k`, which has this probability, that come close during each step, and those
+    /// that are close at the moment itself.
+    #[inline(always)]
+    fn add(&mut self, k: usize, share: f64, during: [u64; HORIZON], first: u64) {
+        let count = |bits: u64| f64::from(bits.count_ones()) / DEVIATIONS as f64;
+        let (mut until, mut steps) = (0, [[0.0; 2]; 2 * HORIZON]);
+        for (step, now) in during.into_iter().enumerate() {
+            until |= now;
+            for (index, bits) in [(step, now), (HORIZON + step, until)] {
+                steps[index] = [if first > 0 { count(bits & first) } else { 0.0 }, count(bits & !first)];
+            }
+        }
+        for (sum, of_hypothesis) in self.steps.as_flattened_mut().iter_mut().zip(steps.as_flattened()) {
+            *sum += share * of_hypothesis;
+        }
+        self.of_hypotheses.push((k, steps));
     }
 }
 
@@ -264,6 +229,7 @@ fn rings<P: Iterator<Item = Position> + Clone>(origin: Position, of_step: impl F
 }
 
 /// The steps during which two may touch, marked 1; `None` if there are none.
+#[inline(always)]
 fn near(a: &Rings, b: &Rings) -> Option<[u32; HORIZON]> {
     let mut near = [0; HORIZON];
     let mut any = 0;

@@ -1,7 +1,11 @@
 //! Deviations of equal probability, by which integrals over the spread are computed.
 
+use ddl_simd::{LANES, Lanes};
+use std::array::from_fn;
 use std::f64::consts::PI;
 
+/// What `f32` may be wrong by.
+const ROUNDING: f64 = 1e-6;
 /// Number of deviations.
 pub(super) const DEVIATIONS: usize = 64;
 /// Multiples of these, without their whole parts, fill a square evenly: powers of 1 / 1.3247, the plastic number.
@@ -32,6 +36,25 @@ impl Quadrature {
     /// The distance of the last deviation.
     pub(super) fn farthest(&self) -> f64 {
         self.x[DEVIATIONS - 1].hypot(self.y[DEVIATIONS - 1])
+    }
+}
+
+/// Deviations in `f32`, in blocks one after the other.
+#[derive(Debug)]
+pub(super) struct DeviationBlocks {
+    pub(super) blocks: [[Lanes; 2]; DEVIATIONS / LANES],
+    /// None of a block is longer.
+    pub(super) most: [f32; DEVIATIONS / LANES],
+}
+
+impl DeviationBlocks {
+    pub(super) fn of(exact: &Quadrature) -> Self {
+        let lanes = |all: &[f64; DEVIATIONS], b: usize| Lanes(from_fn(|j| all[b * LANES + j] as f32));
+        let longest = |b: usize| exact.x[(b + 1) * LANES - 1].hypot(exact.y[(b + 1) * LANES - 1]);
+        Self {
+            blocks: from_fn(|b| [lanes(&exact.x, b), lanes(&exact.y, b)]),
+            most: from_fn(|b| (longest(b) * (1.0 + ROUNDING)) as f32),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 use super::{DEVIATIONS, crowd::CrowdAtRisk, quadrature::Quadrature};
 use crate::fixture::{futures, plan, with_deviation};
 use crate::{Futures, Plan, Risk, SceneError};
-use ddl_core::{Forecast, HORIZON, Position, Window};
+use ddl_core::{Forecast, HORIZON, OBSERVED, Pace, PedestrianId, Position, RegionTable, Spread, Window};
 use proptest::{collection::vec, prelude::*};
 use serde::Deserialize;
 
@@ -97,6 +97,41 @@ fn monte_carlo_agrees() {
     assert!(mean < 0.0055, "{mean}");
 }
 
+/// Two walk side by side at 1.2 m/s, 0.8 m apart; either may stop. The companion of who follows the plan goes on as it
+/// does, and keeps its distance; a stranger at the same place may come close.
+#[test]
+fn companions_go_on_as_the_plan_does() {
+    let walk = |x: f64| -> Vec<Position> { (0..OBSERVED).map(|t| [x, 0.48 * (t as f64 - 7.0)]).collect() };
+    let window = |other: f64| {
+        let ids = vec![PedestrianId(1), PedestrianId(2)];
+        Window::new("yard", 0, 10, ids, vec![walk(0.0), walk(other)]).unwrap()
+    };
+    let hypothesis = |x: f64, speed: f64| (1..=HORIZON).map(move |t| [x, speed * 0.4 * t as f64]);
+    let of_both = |other: f64| {
+        let of_each = [0.0, other].map(|x| [1.2, 0.0].map(|speed| hypothesis(x, speed)));
+        let positions = of_each.into_iter().flatten().flatten().collect();
+        let spread = Spread {
+            scales: vec![0.15; 2 * HORIZON],
+            paces: vec![Pace::Walking; 2],
+            regions: RegionTable::of(&[&[[1.0; HORIZON]; 9]; 3], &[0.5]).unwrap().into(),
+        };
+        let forecast = Forecast::new(2, 2, positions, vec![0.5; 4], None).unwrap().with_spread(spread).unwrap();
+        Futures::new(&window(other), forecast, None).unwrap()
+    };
+    // The plan goes on, or stops after 1 m.
+    for (rows, stops) in
+        [([[0.0, 0.0, 0.0, 0.0], [4.8, 0.0, 5.76, 0.0]], false), ([[0.0; 4], [1.0, 0.0, 1.0, 0.0]], true)]
+    {
+        let plan = [plan(&rows)];
+        let beside = of_both(0.8);
+        let [seen, unseen] = [
+            beside.risks_if_seen(&plan, 0.5, Some(0)).unwrap().remove(0),
+            beside.risks(&plan, 0.5, Some(0)).unwrap().remove(0),
+        ];
+        assert!(seen.total < 0.5 * unseen.total && seen.total > 0.0, "{stops}: {} {}", seen.total, unseen.total);
+    }
+}
+
 #[test]
 fn what_cannot_be_asked_is_refused() {
     let futures = futures(&[[0.0; 2]], &[vec![[1.0, 0.0]]], &[1.0], &[0.5]);
@@ -104,7 +139,7 @@ fn what_cannot_be_asked_is_refused() {
         let refused = futures.risks(&[], within, None).unwrap_err().to_string();
         assert!(refused.starts_with("the distance that counts as close is "), "{refused}");
     }
-    let window = Window::new("yard", 0, 10, vec![ddl_core::PedestrianId(1)], vec![vec![[0.0; 2]; 8]]).unwrap();
+    let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![vec![[0.0; 2]; 8]]).unwrap();
     let bare = Forecast::with_equal_weights(1, 1, vec![[0.0; 2]; 12]).unwrap();
     let bare = Futures::new(&window, bare, None).unwrap();
     assert_eq!(bare.risks(&[], 0.5, None), Err(SceneError::NoSpread));
@@ -141,8 +176,10 @@ proptest! {
                 let [x, y] = [0, 1].map(|axis| starts[i][axis] + time * velocities[i][k][axis]);
                 (x + scale * zx[z] - px).hypot(y + scale * zy[z] - py) - r
             };
-            let hits = crowd.hits(&sweep, i, k).map_or([[[0.0; 2]; HORIZON]; 2], |hits| [hits.steps, hits.until]);
-            let hits = hits.map(|hits| hits.map(|shares| shares.map(|share| (DEVIATIONS as f64 * share) as u32)));
+            let surely: [f64; 3] = std::array::from_fn(|other| f64::from(u8::from(other == k)));
+            let hits = crowd.hits(&sweep, i, &surely).map_or([[0.0; 2]; 2 * HORIZON], |hits| hits.steps);
+            let hits = hits.map(|shares| shares.map(|share| (DEVIATIONS as f64 * share).round() as u32));
+            let hits = hits.as_chunks::<HORIZON>().0;
             let mut so_far = [f64::INFINITY; DEVIATIONS];
             for step in 0..HORIZON {
                 let during: [f64; DEVIATIONS] = std::array::from_fn(|z| {
@@ -184,6 +221,10 @@ proptest! {
             prop_assert!(larger.total >= risk.total - 1e-12);
             prop_assert!(larger.pedestrians.iter().zip(&risk.pedestrians).all(|(large, small)| large >= small));
         }
+        // Strangers who see the plan come close less often, and nobody more than before.
+        let seen = crowd.risks_if_seen(std::slice::from_ref(&first), within, None).unwrap().remove(0);
+        prop_assert!(seen.pedestrians.iter().zip(&risk.pedestrians).all(|(seen, unseen)| *seen <= unseen + 1e-12));
+        prop_assert!(seen.total <= risk.total + 1e-12 && seen.until.is_sorted());
         let most = risk.pedestrians.iter().copied().fold(0.0, f64::max);
         prop_assert!(risk.total >= most - 1e-12 && risk.total <= risk.pedestrians.iter().sum::<f64>() + 1e-12);
         prop_assert!(risk.until.is_sorted() && risk.total <= 1.0 + 1e-12);

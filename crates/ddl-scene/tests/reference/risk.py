@@ -1,6 +1,6 @@
 # Writes risk.json: risks and clearances of scenes like those of src/fixture.rs by Monte Carlo, with numpy 2.4.6:
-# 200,000 deviations of every pedestrian in every future. `python3 risk.py` in this folder; again after a change of the
-# avoidance in src/energy.json.
+# 200,000 deviations of every pedestrian in every future. `python3 risk.py` in this folder; again after a change of
+# src/energy.json.
 import json
 
 import numpy as np
@@ -8,7 +8,8 @@ import numpy as np
 DRAWS = 200_000
 PLACES = 16  # looked at in each step
 with open("../../src/energy.json") as file:
-    AVOIDANCE = json.load(file)["avoidance"]
+    ENERGY = json.load(file)
+AVOIDANCE, TOGETHER = ENERGY["avoidance"], ENERGY["together"]
 
 
 def distances(case, pedestrian, future, z):
@@ -29,14 +30,31 @@ def distances(case, pedestrian, future, z):
     return np.array(steps)
 
 
-def companions(case):
-    """Who stands in a chain of people less than 2.2 m apart from each other, beside the ego."""
-    linked = {case["ego"]}
-    for _ in case["starts"]:
-        for other, place in enumerate(case["starts"]):
-            if any(np.hypot(*np.subtract(place, case["starts"][one])) < 2.2 for one in linked):
-                linked.add(other)
-    return linked
+def apart(case):
+    """Distances `[n][n]` (m) of people who stood; from oneself very far."""
+    starts = np.asarray(case["starts"])
+    return np.linalg.norm(starts[:, None] - starts, axis=-1) + 1e9 * np.eye(len(starts))
+
+
+def response(case, pedestrian, reach):
+    """Factors of the futures, and of the odds to come close, of somebody who sees the plan."""
+    gaps, rows = apart(case), np.asarray(case["plan"])
+    ego = case["ego"]
+    if ego is not None and gaps[ego, pedestrian] < TOGETHER["distances"][2]:
+        ties = (gaps < TOGETHER["distances"][2]).sum(1)
+        band = np.searchsorted(TOGETHER["distances"], gaps[ego, pedestrian], side="right")
+        strength = TOGETHER["strengths"][band][0] / np.sqrt(max(ties[ego], ties[pedestrian]))
+        plan = [np.interp(4.8, rows[:, 0], rows[:, column]) - rows[0, column] for column in (1, 2)]
+        off = np.linalg.norm(4.8 * np.asarray(case["velocities"][pedestrian]) - plan, axis=1)
+        base, slope = AVOIDANCE["companions"]
+        ratio = np.log(gaps[ego, pedestrian] / max(reach, 0.1)).clip(-0.5, 1)
+        return (1 + (off / TOGETHER["scale"]) ** 2 / 3) ** -strength, np.exp(-max(base + slope * ratio, 0))
+    strength, of_present, of_kept = AVOIDANCE["strangers"]
+    present = np.linalg.norm(np.subtract(case["starts"][pedestrian], rows[0, 1:3])).clip(0.5, 10)
+    kept = gaps[pedestrian].min().clip(0.3, 3)
+    share = np.interp(reach, AVOIDANCE["within"], AVOIDANCE["shares"])
+    exponent = share * (strength + of_present * np.log(present / 2) + of_kept * np.log(kept))
+    return np.ones(len(case["weights"])), np.exp(-max(exponent, 0))
 
 
 def scene(rng, size, deviation, ego):
@@ -53,8 +71,6 @@ def scene(rng, size, deviation, ego):
         "ego": ego,
     }
     reach = case["within"] + max(row[3] for row in case["plan"] if row[0] < 4.8)
-    odds = [np.exp(-np.interp(reach, AVOIDANCE["within"], AVOIDANCE[kind])) for kind in ("strangers", "companions")]
-    together = set() if ego is None else companions(case)
     # Of each pedestrian and future: probabilities to be close of those who are now, and of others.
     close, clearances, nearest = np.zeros((n, k, 2, 24)), np.zeros(n), 0
     for future in range(k):
@@ -72,17 +88,19 @@ def scene(rng, size, deviation, ego):
         nearest += weights[future] * far.mean()
     results = {}
     for name in ("unseen", "seen"):
-        probabilities, nobody = np.zeros(n), np.ones((k, 24))
+        probabilities, nobody, joint = np.zeros(n), np.ones((k, 24)), weights.copy()
         for i in set(range(n)) - {ego}:
+            factors, odds = (np.ones(k), 1.0) if name == "unseen" else response(case, i, reach)
+            own = weights * factors / (weights @ factors)
             # The odds of who is not close now are multiplied by the factor.
-            factor = 1.0 if name == "unseen" else odds[int(i in together)]
-            now, later = close[i, :, :, -1].T[:, :, None]
-            share = later / np.maximum(1 - now, 1e-300)
-            reduction = factor / (1 - share + share * factor)
-            of_futures = close[i, :, 0] + reduction * close[i, :, 1]
-            nobody *= 1 - of_futures
-            probabilities[i] = weights @ of_futures[:, -1]
-        results[name] = np.concatenate([probabilities, weights @ (1 - nobody)])
+            now, later = own @ close[i, :, 0, -1], own @ close[i, :, 1, -1]
+            share = later / max(1 - now, 1e-300)
+            of_futures = close[i, :, 0] + odds / (1 - share + share * odds) * close[i, :, 1]
+            probabilities[i] = own @ of_futures[:, -1]
+            if now + later > 0.004:
+                nobody *= 1 - of_futures
+                joint *= factors
+        results[name] = np.concatenate([probabilities, joint @ (1 - nobody) / joint.sum()])
     case |= {name: np.round(values, 4).tolist() for name, values in results.items()}
     return case | {"clearances": np.round(clearances, 4).tolist(), "nearest": round(nearest, 4)}
 
