@@ -35,8 +35,7 @@ struct Avoidance {
     within: [f64; 4],
     /// By these distances, the share of the logarithm of strangers.
     shares: [f64; 4],
-    /// Of strangers: at 2 m from the plan and 1 m from others; for each power of e farther from the plan, and from
-    /// others.
+    /// Of strangers: at 2 m from the plan; for each power of e farther from it; less where all let others come near.
     strangers: [f64; 3],
     /// Of companions: who kept just the distance that counts as close; for each power of e that they kept more.
     companions: [f64; 2],
@@ -65,9 +64,6 @@ struct Together {
     /// Scale of the difference of displacements, metres.
     scale: f32,
 }
-
-/// Distances that people keep from each other do not count beyond this, metres.
-pub(crate) const KEPT: f64 = 3.0;
 
 static LEARNED: LazyLock<Option<Energy>> = LazyLock::new(|| serde_json::from_str(include_str!("energy.json")).ok());
 
@@ -101,15 +97,15 @@ impl Energy {
     }
 
     /// The logarithm by which the odds are divided that somebody comes within a distance (m) of a plan, who is at this
-    /// distance (m) from it at the moment, and kept this distance (m) from everybody over the observation.
-    pub(crate) fn avoidance_of_stranger(&self, within: f64, present: f64, kept: f64) -> f64 {
-        let Avoidance { within: at, shares, strangers: [strength, of_present, of_kept], .. } = &self.avoidance;
+    /// distance (m) from it at the moment, where this share of people lets others come near.
+    pub(crate) fn avoidance_of_stranger(&self, within: f64, present: f64, crowding: f64) -> f64 {
+        let Avoidance { within: at, shares, strangers: [strength, of_present, of_crowding], .. } = &self.avoidance;
         let next = at.partition_point(|at| *at <= within).min(at.len() - 1);
         let [from, to] = [next.saturating_sub(1), next];
         let along = if to > from { (within - at[from]) / (at[to] - at[from]) } else { 0.0 };
         let share = shares[from] + along.clamp(0.0, 1.0) * (shares[to] - shares[from]);
-        let [present, kept] = [(present.clamp(0.5, 10.0) / 2.0).ln(), kept.clamp(0.3, KEPT).ln()];
-        (share * (strength + of_present * present + of_kept * kept)).max(0.0)
+        let present = (present.clamp(0.5, 10.0) / 2.0).ln();
+        (share * (strength + of_present * present - of_crowding * crowding)).max(0.0)
     }
 
     /// The same of somebody who walks with the one who follows the plan, and kept this distance (m) from it.

@@ -1,6 +1,6 @@
 //! Who walks together, and how near people come to each other.
 
-use crate::energy::{Energy, KEPT, closeness};
+use crate::energy::{Energy, closeness};
 use ddl_core::{OBSERVED, SpatialIndex, Window, distance};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -9,6 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 const CLOSE: f64 = 2.2;
 /// Difference of their mean velocities below which they do, m/s.
 const ALIKE: f64 = 0.35;
+/// Whoever comes nearer to another over the observation lets others come near, metres.
+const LET_NEAR: f64 = 0.6;
+/// Who is around somebody, metres.
+const AROUND: f64 = 5.0;
 /// Each pedestrian is compared with at most this many others, the nearest ones.
 const MOST_NEIGHBOURS: usize = 16;
 
@@ -29,8 +33,8 @@ pub(crate) struct Company {
     /// Groups of pedestrians who walk together, as [`groups`].
     pub(crate) groups: Vec<Vec<usize>>,
     pub(crate) ties: Vec<Tie>,
-    /// `[N]`: the least distance (m) from anybody over the observation, up to 3 m.
-    pub(crate) kept: Vec<f64>,
+    /// `[N]`: the share of those around each who let others come near.
+    pub(crate) crowding: Vec<f64>,
 }
 
 impl Company {
@@ -39,7 +43,7 @@ impl Company {
         let present = window.positions_at(OBSERVED - 1);
         let index = SpatialIndex::new(&present);
         let mut links: Vec<usize> = (0..window.len()).collect();
-        let (mut kept, mut partners) = (vec![KEPT; window.len()], vec![0.0_f32; window.len()]);
+        let (mut kept, mut partners) = (vec![f64::INFINITY; window.len()], vec![0.0_f32; window.len()]);
         let near = |i: usize| index.nearest_others(i, present[i], MOST_NEIGHBOURS).into_iter();
         let pairs: BTreeSet<[usize; 2]> =
             (0..window.len()).flat_map(|i| near(i).map(move |j| [i.min(j), i.max(j)])).collect();
@@ -69,7 +73,15 @@ impl Company {
             *strength /= a.max(b).sqrt();
         }
         let groups = linked(&mut links).into_values().filter(|members| members.len() > 1).collect();
-        Self { groups, ties, kept }
+        let crowding = |i: usize| {
+            let around = near(i).filter(|&j| distance(present[i], present[j]) < AROUND).chain([i]);
+            let (count, some) = around
+                .fold((0.0, 0.0), |(count, some), one| (count + 1.0, some + f64::from(u8::from(kept[one] < LET_NEAR))));
+            // As if two more were there, of whom a fourth does.
+            (some + 0.5) / (count + 2.0)
+        };
+        let crowding = (0..window.len()).map(crowding).collect();
+        Self { groups, ties, crowding }
     }
 
     /// Of some of the pedestrians, `[N]` of them, who have these places among them.
@@ -82,7 +94,7 @@ impl Company {
         Self {
             groups: groups.filter(|group| group.len() > 1).collect(),
             ties: self.ties.iter().filter_map(tie).collect(),
-            kept: pedestrians.iter().map(|&i| self.kept[i]).collect(),
+            crowding: pedestrians.iter().map(|&i| self.crowding[i]).collect(),
         }
     }
 

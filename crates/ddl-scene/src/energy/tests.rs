@@ -75,19 +75,18 @@ fn strengths_by_hand() {
 #[test]
 fn avoidance_by_hand() {
     let (energy, e) = (energy(), std::f64::consts::E);
-    // Within, present distance, distance kept from others (m), logarithm.
-    for [within, present, kept, expected] in [
-        [0.0, 2.0, 1.0, 3.0],
-        [0.4, 2.0, 1.0, 2.0],
-        [0.8, 2.0 * e, 1.0, 0.75 * 1.4],
-        [0.6, 2.0, e, 1.8],
-        [0.6, 2.0, 9.0, 1.0 + 0.8 * 3.0_f64.ln()],
-        [1.5, 99.0, 1.0, 0.25 * (1.0 + 0.4 * 5.0_f64.ln())],
-        [0.6, 0.1, 0.1, 0.0],
-        [9.0, 2.0, 1.0, 0.0],
+    // Within, present distance (m), share of those who let others come near, logarithm.
+    for [within, present, crowding, expected] in [
+        [0.0, 2.0, 0.0, 3.0],
+        [0.4, 2.0, 0.0, 2.0],
+        [0.8, 2.0 * e, 0.0, 0.75 * 1.4],
+        [0.6, 2.0, 0.5, 0.6],
+        [1.5, 99.0, 0.0, 0.25 * (1.0 + 0.4 * 5.0_f64.ln())],
+        [0.6, 0.1, 0.9, 0.0],
+        [9.0, 2.0, 0.0, 0.0],
     ] {
-        let found = energy.avoidance_of_stranger(within, present, kept);
-        assert!((found - expected).abs() < 1e-9, "{within} {present} {kept}: {found}");
+        let found = energy.avoidance_of_stranger(within, present, crowding);
+        assert!((found - expected).abs() < 1e-9, "{within} {present} {crowding}: {found}");
     }
     // Within, distance kept from the ego, logarithm.
     for [within, kept, expected] in

@@ -14,7 +14,7 @@ pub(super) struct CourseLeg {
     /// 0 to 11.
     pub(super) step: usize,
     /// Where it begins and ends, as shares of the step.
-    shares: [f64; 2],
+    pub(super) shares: [f64; 2],
     /// The plan at its two ends, metres.
     pub(super) positions: [Position; 2],
     pub(super) radius: f64,
@@ -53,16 +53,22 @@ pub(super) struct LegApproach {
 
 impl CourseLeg {
     /// Of a pedestrian with this path and these scales, at the moment and 12 steps after it.
-    #[inline(always)]
+    #[inline]
     pub(super) fn approach(&self, path: &[Position; HORIZON + 1], scales: &[f64; HORIZON + 1]) -> LegApproach {
         let [from, to] = [path[self.step], path[self.step + 1]];
-        let [least, most] = [scales[self.step], scales[self.step + 1]];
         // `ddl_core::between` is too far away to be inlined here.
         let offset = |end: usize| {
             let along = |axis: usize| from[axis] + self.shares[end] * (to[axis] - from[axis]);
             [along(0) - self.positions[end][0], along(1) - self.positions[end][1]]
         };
-        LegApproach { offsets: [offset(0), offset(1)], scales: self.shares.map(|share| least + share * (most - least)) }
+        LegApproach { offsets: [offset(0), offset(1)], scales: self.scales(scales) }
+    }
+
+    /// The scales at its two ends (m), of these at the moment and 12 steps after it.
+    #[inline(always)]
+    pub(super) fn scales(&self, scales: &[f64; HORIZON + 1]) -> [f64; 2] {
+        let [least, most] = [scales[self.step], scales[self.step + 1]];
+        self.shares.map(|share| least + share * (most - least))
     }
 
     /// The least distance (m) from the edge of the plan during the leg, of the pedestrian that deviates from its path

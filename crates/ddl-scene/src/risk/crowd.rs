@@ -4,10 +4,10 @@
 
 use super::course::{CourseLeg, legs};
 use super::quadrature::{DEVIATIONS, DeviationBlocks, Quadrature};
-use super::way::PedestrianWays;
+use super::way::PedestrianCourse;
 use crate::{error::SceneError, futures::Futures, plan::Plan};
 use ddl_core::{HORIZON, Position, between, bounds};
-use ddl_simd::{Dispatch, Kernel, LANES, Simd};
+use ddl_simd::{Dispatch, Kernel, LANES, Lanes, Simd};
 use std::array::from_fn;
 use std::collections::BTreeMap;
 
@@ -22,10 +22,12 @@ pub(super) struct CrowdAtRisk {
     paths: Vec<[Position; HORIZON + 1]>,
     /// `[N]`, metres.
     scales: Vec<[f64; HORIZON + 1]>,
-    /// `[K][N]`: around all deviations of a pedestrian from a hypothesis.
+    /// `[N][13][K / 16]`: x and y of the same paths, metres from the present position of the pedestrian.
+    lanes: Vec<[Lanes; 2]>,
+    /// `[N]`, metres.
+    present: Vec<Position>,
+    /// `[N]`: around all deviations from all hypotheses.
     rings: Vec<Rings>,
-    /// `[N]`: around those from all hypotheses.
-    outer_rings: Vec<Rings>,
     origin: Position,
     /// `[K]`: the deviations from each hypothesis, exactly and in blocks.
     deviations: Vec<(Quadrature, DeviationBlocks)>,
@@ -84,24 +86,35 @@ impl CrowdAtRisk {
             (exact, blocks)
         };
         let deviations: Vec<_> = (0..count).map(of_hypothesis).collect();
-        let around = |i: usize, of: &[usize]| {
-            let path = |k: usize| &paths[k * n + i];
-            let farthest = of.iter().map(|&k| deviations[k].0.farthest()).fold(0.0, f64::max);
+        let farthest = deviations.iter().map(|(exact, _)| exact.farthest()).fold(0.0, f64::max);
+        let of_step = |i: usize, step: usize| (0..count).map(move |k| (k * n + i, step));
+        let around = |i: usize| {
             rings(origin, |step| {
+                let both = of_step(i, step).chain(of_step(i, step + 1));
                 let margin = farthest * scales[i][step].max(scales[i][step + 1]);
-                (of.iter().flat_map(move |&k| [path(k)[step], path(k)[step + 1]]), margin)
+                (both.map(|(pair, step)| paths[pair][step]), margin)
             })
         };
-        let rings = pairs().map(|(i, k)| around(i, &[k])).collect();
-        let all: Vec<usize> = (0..count).collect();
-        let outer_rings = (0..n).map(|i| around(i, &all)).collect();
+        let rings = (0..n).map(around).collect();
+        let present: Vec<Position> = (0..n).map(|i| futures.present(i)).collect();
+        let lanes_of = |(i, step, first): (usize, usize, usize)| {
+            // Lanes without a hypothesis are far from everything.
+            let at = |axis: usize, k: usize| match k < count {
+                true => (paths[k * n + i][step][axis] - present[i][axis]) as f32,
+                false => f32::MAX.sqrt(),
+            };
+            [0, 1].map(|axis| Lanes(from_fn(|lane| at(axis, first + lane))))
+        };
+        let firsts = |(i, step)| (0..count).step_by(LANES).map(move |first| (i, step, first));
+        let lanes =
+            (0..n).flat_map(|i| (0..=HORIZON).map(move |step| (i, step))).flat_map(firsts).map(lanes_of).collect();
         let (mut parts, mut shares) = (vec![0; n], vec![Vec::new(); n]);
         for (p, part) in futures.parts().iter().enumerate() {
             for (row, &i) in part.pedestrians().iter().enumerate() {
                 (parts[i], shares[i]) = (p, part.shares(row, count));
             }
         }
-        Ok(Self { n, paths, scales, rings, outer_rings, origin, deviations, parts, shares })
+        Ok(Self { n, paths, scales, lanes, present, rings, origin, deviations, parts, shares })
     }
 
     /// These pedestrians, in ascending order, by the part that they belong to.
@@ -126,7 +139,7 @@ impl CrowdAtRisk {
 
     /// The pedestrians that come close on some hypothesis, and perhaps others.
     pub(super) fn near(&self, sweep: &Sweep) -> Vec<usize> {
-        (0..self.n).filter(|i: &usize| near(&self.outer_rings[*i], &sweep.rings).is_some()).collect()
+        (0..self.n).filter(|i: &usize| near(&self.rings[*i], &sweep.rings).is_some()).collect()
     }
 
     /// How likely pedestrian `i`, whose hypotheses have these probabilities, comes close; `None` if surely not.
@@ -163,32 +176,36 @@ struct CrowdSearch<'a> {
 impl Kernel for &mut CrowdSearch<'_> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Sweep { legs, within, rings } = self.sweep;
-        let i = self.pedestrian;
-        let scales = &self.crowd.scales[i];
-        let mut ways = PedestrianWays::default();
-        for (k, share) in self.shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
-            let pair = k * self.crowd.n + i;
-            let Some(near) = near(&self.crowd.rings[pair], rings) else { continue };
-            let blocks = &self.crowd.deviations[k].1;
-            let (mut during, mut first, mut until) = ([0_u64; HORIZON], 0, 0);
-            for (chunk, legs) in legs.chunks(LANES).enumerate() {
-                for (lane, leg) in legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
-                    ways.set(lane, leg.approach(&self.crowd.paths[pair], scales), within + leg.radius);
-                }
-                let nearest = ways.nearest(simd);
-                for (lane, leg) in legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
-                    let way = ways.way(lane);
-                    let bits = way.close(simd, blocks, nearest[lane]);
-                    during[leg.step] |= bits;
-                    until |= bits;
-                    if (chunk, lane) == (0, 0) && bits > 0 {
-                        first = way.at_start().close(simd, blocks, 0.0);
+        let (Sweep { legs, within, rings }, crowd, i) = (self.sweep, self.crowd, self.pedestrian);
+        let Some(near) = near(&crowd.rings[i], rings) else { return };
+        let count = self.shares.len();
+        let chunks = count.div_ceil(LANES);
+        let outermost = crowd.deviations.iter().map(|(_, blocks)| blocks.outermost()).fold(0.0, f32::max);
+        // Of each hypothesis the deviations that come close during each step, then those that are at the moment itself.
+        let mut close = vec![[0_u64; HORIZON + 1]; count];
+        for (l, leg) in legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
+            let course = PedestrianCourse::new(leg, crowd.present[i], &crowd.scales[i], within + leg.radius);
+            for chunk in 0..chunks {
+                let at = |step: usize| &crowd.lanes[(i * (HORIZON + 1) + step) * chunks + chunk];
+                let ways = course.ways(simd, at(leg.step), at(leg.step + 1));
+                let mut lanes = ways.within(simd, outermost);
+                while lanes > 0 {
+                    let lane = lanes.trailing_zeros() as usize;
+                    lanes &= lanes - 1;
+                    let k = chunk * LANES + lane;
+                    let (way, blocks) = (ways.way(lane), &crowd.deviations[k].1);
+                    let bits = way.close(simd, blocks, ways.nearest(lane));
+                    close[k][leg.step] |= bits;
+                    if l == 0 && bits > 0 {
+                        close[k][HORIZON] = way.at_start().close(simd, blocks, 0.0);
                     }
                 }
             }
-            if until > 0 {
-                self.hits.add(k, *share, during, first);
+        }
+        for (k, (close, share)) in close.iter().zip(self.shares).enumerate() {
+            let [during @ .., first] = close;
+            if *share > 0.0 && during.iter().any(|bits| *bits > 0) {
+                self.hits.add(k, *share, *during, *first);
             }
         }
     }

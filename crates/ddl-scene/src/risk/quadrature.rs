@@ -56,6 +56,11 @@ impl DeviationBlocks {
             most: from_fn(|b| (longest(b) * (1.0 + ROUNDING)) as f32),
         }
     }
+
+    /// None is longer.
+    pub(super) fn outermost(&self) -> f32 {
+        self.most[self.most.len() - 1]
+    }
 }
 
 /// Probability that Student's t with 3 degrees of freedom, in two dimensions, lies within a distance (in scales).

@@ -1,7 +1,7 @@
 //! How people respond to a plan that they see.
 //!
 //! Strangers keep away from it: the odds that one comes close are divided by a factor, which is large for those who are
-//! far away at the moment, so that they have time, and small for those who let others come near. Companions of the
+//! far away at the moment, so that they have time, and small where people let others come near. Companions of the
 //! pedestrian who follows it go on as the plan does, as in the [energy](crate::energy) of walking together, and keep the
 //! distance that they kept.
 
@@ -13,8 +13,8 @@ use ddl_core::{HORIZON, Position, TIME_STEP, distance};
 pub(super) enum Response {
     /// Not at all, or nobody knows.
     None,
-    /// As a stranger, who kept this distance (m) from others.
-    Stranger { kept: f64 },
+    /// As a stranger, where this share of people lets others come near.
+    Stranger { crowding: f64 },
     /// As a companion.
     Companion { strength: f32, kept: f64 },
 }
@@ -30,9 +30,9 @@ pub(super) struct PlanResponse {
 
 /// The responses of all to plans that `ego` follows, if it is one of them.
 pub(super) fn responses(futures: &Futures, ego: Option<usize>) -> Vec<Response> {
-    let kept = &futures.company().kept;
-    let of_stranger =
-        |i: usize| if futures.is_known(i) { Response::Stranger { kept: kept[i] } } else { Response::None };
+    let crowding = &futures.company().crowding;
+    let stranger = |i: usize| Response::Stranger { crowding: crowding[i] };
+    let of_stranger = |i: usize| if futures.is_known(i) { stranger(i) } else { Response::None };
     let mut responses: Vec<Response> = (0..futures.pedestrians()).map(of_stranger).collect();
     for (i, tie) in ego.into_iter().flat_map(|ego| futures.company().with(ego)) {
         responses[i] = Response::Companion { strength: tie.strength, kept: tie.kept };
@@ -47,9 +47,9 @@ impl Response {
         let start = plan.at(0.0).position;
         let (factors, logarithm) = match self {
             Self::None => (Vec::new(), 0.0),
-            Self::Stranger { kept } => {
+            Self::Stranger { crowding } => {
                 let present = distance(start, futures.present(i));
-                (Vec::new(), Energy::learned().avoidance_of_stranger(within, present, kept))
+                (Vec::new(), Energy::learned().avoidance_of_stranger(within, present, crowding))
             }
             Self::Companion { strength, kept } => {
                 let end = plan.at(TIME_STEP * HORIZON as f64).position;

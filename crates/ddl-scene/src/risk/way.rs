@@ -2,8 +2,9 @@
 
 #![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
 
-use super::course::LegApproach;
+use super::course::CourseLeg;
 use super::quadrature::DeviationBlocks;
+use ddl_core::{HORIZON, Position};
 use ddl_simd::{LANES, Lanes, Simd};
 use fearless_simd::prelude::*;
 
@@ -23,52 +24,81 @@ pub(super) struct PedestrianWay {
     ds: f32,
 }
 
-/// Sixteen ways.
-#[derive(Debug, Clone)]
-pub(super) struct PedestrianWays {
-    x: Lanes,
-    y: Lanes,
-    s: Lanes,
-    r: Lanes,
-    dx: Lanes,
-    dy: Lanes,
-    ds: Lanes,
+/// A leg of a plan as a pedestrian sees it.
+#[derive(Debug)]
+pub(super) struct PedestrianCourse {
+    /// Where it begins and ends, as shares of the step.
+    shares: [f32; 2],
+    /// The plan there, metres from the present position of the pedestrian.
+    plan: [[f32; 2]; 2],
+    scales: [f32; 2],
+    reach: f32,
 }
 
-impl Default for PedestrianWays {
-    fn default() -> Self {
-        let [x, y, s, r, dx, dy, ds] = [Lanes::ZERO; 7];
-        Self { x, y, s, r, dx, dy, ds }
-    }
-}
-
-impl PedestrianWays {
+impl PedestrianCourse {
     #[inline(always)]
-    pub(super) fn set(&mut self, lane: usize, LegApproach { offsets, scales }: LegApproach, reach: f64) {
-        let [[x, y], [x1, y1]] = offsets.map(|offset| offset.map(|number| number as f32));
-        let [s, s1] = scales.map(|scale| scale as f32);
-        (self.x.0[lane], self.y.0[lane], self.s.0[lane], self.r.0[lane]) = (x, y, s, reach as f32);
-        (self.dx.0[lane], self.dy.0[lane], self.ds.0[lane]) = (x1 - x, y1 - y, s1 - s);
+    pub(super) fn new(leg: &CourseLeg, present: Position, scales: &[f64; HORIZON + 1], reach: f64) -> Self {
+        Self {
+            shares: leg.shares.map(|share| share as f32),
+            plan: leg.positions.map(|at| [0, 1].map(|axis| (at[axis] - present[axis]) as f32)),
+            scales: leg.scales(scales).map(|scale| scale as f32),
+            reach: reach as f32,
+        }
     }
 
+    /// Of sixteen hypotheses, from their places at the beginning and at the end of the step.
     #[inline(always)]
-    pub(super) fn way(&self, lane: usize) -> PedestrianWay {
-        let [x, y, s, r, dx, dy, ds] =
-            [&self.x, &self.y, &self.s, &self.r, &self.dx, &self.dy, &self.ds].map(|lanes| lanes.0[lane]);
-        PedestrianWay { x, y, s, r, dx, dy, ds }
-    }
-
-    /// The least squared distances of the paths themselves, smaller by what `f32` may be wrong by.
-    #[inline(always)]
-    pub(super) fn nearest<S: Simd>(&self, simd: S) -> [f32; LANES] {
-        let [x, y, dx, dy] = [&self.x, &self.y, &self.dx, &self.dy].map(|lanes| simd.load(&lanes.0));
+    pub(super) fn ways<S: Simd>(&self, simd: S, from: &[Lanes; 2], to: &[Lanes; 2]) -> PedestrianWays<'_> {
+        let mut ways =
+            PedestrianWays { course: self, offsets: [Lanes::ZERO; 2], moves: [Lanes::ZERO; 2], nearest: Lanes::ZERO };
+        for axis in 0..2 {
+            let (from, to) = (simd.load(&from[axis].0), simd.load(&to[axis].0));
+            let along = to - from;
+            let at = |end: usize| from + along * self.shares[end] - self.plan[end][axis];
+            let start = at(0);
+            simd.store(start, &mut ways.offsets[axis].0);
+            simd.store(at(1) - start, &mut ways.moves[axis].0);
+        }
+        let [x, y] = [simd.load(&ways.offsets[0].0), simd.load(&ways.offsets[1].0)];
+        let [dx, dy] = [simd.load(&ways.moves[0].0), simd.load(&ways.moves[1].0)];
         let zero = simd.splat(0.0);
         let share = (zero - (x * dx + y * dy)) / (dx * dx + dy * dy + f32::MIN_POSITIVE);
         let share = share.max(zero).min(simd.splat(1.0));
         let (x, y) = (x + share * dx, y + share * dy);
-        let mut nearest = [0.0; LANES];
-        simd.store((x * x + y * y) * (1.0 - ROUNDING), &mut nearest);
-        nearest
+        simd.store((x * x + y * y) * (1.0 - ROUNDING), &mut ways.nearest.0);
+        ways
+    }
+}
+
+/// Sixteen ways during a leg.
+#[derive(Debug)]
+pub(super) struct PedestrianWays<'a> {
+    course: &'a PedestrianCourse,
+    offsets: [Lanes; 2],
+    moves: [Lanes; 2],
+    /// The least squared distances of the paths themselves, smaller by what `f32` may be wrong by.
+    nearest: Lanes,
+}
+
+impl PedestrianWays<'_> {
+    /// Those on which a deviation of this many scales may come close, one bit for each.
+    #[inline(always)]
+    pub(super) fn within<S: Simd>(&self, simd: S, outermost: f32) -> u64 {
+        let [s, s1] = self.course.scales;
+        let reach = self.course.reach + s.max(s1) * outermost;
+        simd.load(&self.nearest.0).simd_le(reach * reach).to_bitmask()
+    }
+
+    #[inline(always)]
+    pub(super) fn nearest(&self, lane: usize) -> f32 {
+        self.nearest.0[lane]
+    }
+
+    #[inline(always)]
+    pub(super) fn way(&self, lane: usize) -> PedestrianWay {
+        let [x, y, dx, dy] = [&self.offsets[0], &self.offsets[1], &self.moves[0], &self.moves[1]].map(|of| of.0[lane]);
+        let [s, s1] = self.course.scales;
+        PedestrianWay { x, y, s, r: self.course.reach, dx, dy, ds: s1 - s }
     }
 }
 

@@ -49,11 +49,12 @@ def response(case, pedestrian, reach):
         base, slope = AVOIDANCE["companions"]
         ratio = np.log(gaps[ego, pedestrian] / max(reach, 0.1)).clip(-0.5, 1)
         return (1 + (off / TOGETHER["scale"]) ** 2 / 3) ** -strength, np.exp(-max(base + slope * ratio, 0))
-    strength, of_present, of_kept = AVOIDANCE["strangers"]
+    strength, of_present, of_crowding = AVOIDANCE["strangers"]
     present = np.linalg.norm(np.subtract(case["starts"][pedestrian], rows[0, 1:3])).clip(0.5, 10)
-    kept = gaps[pedestrian].min().clip(0.3, 3)
+    around = (gaps[pedestrian] < 5) | (np.arange(len(gaps)) == pedestrian)
+    crowding = ((gaps.min(1)[around] < 0.6).sum() + 0.5) / (around.sum() + 2)
     share = np.interp(reach, AVOIDANCE["within"], AVOIDANCE["shares"])
-    exponent = share * (strength + of_present * np.log(present / 2) + of_kept * np.log(kept))
+    exponent = share * (strength + of_present * np.log(present / 2) - of_crowding * crowding)
     return np.ones(len(case["weights"])), np.exp(-max(exponent, 0))
 
 
