@@ -99,9 +99,9 @@ impl CrowdAtRisk {
         let present: Vec<Position> = (0..n).map(|i| futures.present(i)).collect();
         let lanes_of = |(i, step, first): (usize, usize, usize)| {
             // Lanes without a hypothesis are far from everything.
-            let at = |axis: usize, k: usize| match k < count {
-                true => (paths[k * n + i][step][axis] - present[i][axis]) as f32,
-                false => f32::MAX.sqrt(),
+            let at = |axis: usize, k: usize| match paths.get(k * n + i) {
+                Some(path) => (path[step][axis] - present[i][axis]) as f32,
+                None => f32::MAX.sqrt(),
             };
             [0, 1].map(|axis| Lanes(from_fn(|lane| at(axis, first + lane))))
         };
