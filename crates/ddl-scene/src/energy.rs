@@ -5,7 +5,7 @@
 //! ```text
 //! p(h_1 .. h_N) ~ prod_i w_i(h_i) prod_(i,j) exp(-C_ij - T_ij)
 //! C = conflict(d / near)                    d: least distance of the two paths, looked at every 0.2 s;
-//!                                           near = min(0.4 m, present distance), at least 0.1 m
+//!                                           near = min(0.4 m, distance kept), at least 0.1 m; 0.22 m in crowds
 //! T = c / sqrt(partners) log(1 + D² / 3)    D = |difference of the displacements in 4.8 s| / scale
 //! ```
 //!
@@ -44,8 +44,11 @@ struct Avoidance {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Conflict {
-    /// Distance (m) below which two people collide; for two who are closer already, their present distance.
-    near: f64,
+    /// Distances (m) below which two people collide where few, and where many let others come near; for two who were
+    /// closer over the observation, the distance that they kept.
+    near: [f64; 2],
+    /// The share of people around who let others come near, from which and up to which the distance falls.
+    crowding: [f64; 2],
     /// Energies of pairs that do not walk together at 0, 1/2, 1, 3/2 and 2 times the distance.
     alone: [f32; 5],
     /// Energies of pairs that walk together.
@@ -121,7 +124,7 @@ impl Energy {
 
     /// Least distance (m) of two paths at which no pair has a conflict.
     pub(crate) fn reach(&self) -> f64 {
-        2.5 * self.conflict.near
+        2.5 * self.conflict.near[0]
     }
 
     /// Mean distance (m) from which two pedestrians do not count as walking together.
@@ -139,10 +142,12 @@ impl Energy {
         }
     }
 
-    /// The energy of a pair at this present distance and radius (m), whose [strength](Self::strength) is divided among
-    /// partners.
-    pub(crate) fn of_pair(&self, [present_distance, radius]: [f64; 2], strength: f32, partners: f32) -> PairEnergy {
-        let near = self.conflict.near.min(present_distance - radius);
+    /// The energy of a pair that kept this distance (m), of this radius (m), where this share of people lets others come
+    /// near, whose [strength](Self::strength) is divided among partners.
+    pub(crate) fn of_pair(&self, [kept, radius]: [f64; 2], crowding: f64, strength: f32, partners: f32) -> PairEnergy {
+        let Conflict { near: [sparse, dense], crowding: [from, to], .. } = self.conflict;
+        let share = ((crowding - from) / (to - from)).clamp(0.0, 1.0);
+        let near = (sparse + share * (dense - sparse)).min(kept - radius);
         PairEnergy {
             near: (near as f32).max(0.1),
             radius: radius as f32,

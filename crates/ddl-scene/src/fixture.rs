@@ -2,6 +2,7 @@
 
 use crate::energy::Energy;
 use crate::hypotheses::Hypotheses;
+use crate::pairs::ObservedWalk;
 use crate::{Futures, Plan, PlanPoint};
 use ddl_core::{
     Forecast, HORIZON, OBSERVED, ObservationQuality, Pace, PedestrianId, Position, RegionTable, Spread, Window,
@@ -10,7 +11,10 @@ use ddl_core::{
 /// Constants that are unlike, so that no two can be exchanged.
 pub(crate) fn energy() -> Energy {
     let constants = serde_json::json!({
-        "conflict": {"near": 0.4, "alone": [1.6, 0.8, 0.4, 0.2, 0.1], "together": [3.1, 1.5, 0.7, 0.3, 0.5]},
+        "conflict": {
+            "near": [0.4, 0.2], "crowding": [0.2, 0.8],
+            "alone": [1.6, 0.8, 0.4, 0.2, 0.1], "together": [3.1, 1.5, 0.7, 0.3, 0.5]
+        },
         "together": {
             "distances": [1.0, 2.0, 4.0], "velocities": [0.1, 0.3, 0.6],
             "strengths": [[0.9, 0.8, 0.7], [0.6, 0.5, 0.4], [0.3, 0.2, 0.1]], "scale": 0.5
@@ -52,6 +56,11 @@ pub(crate) fn scene(pedestrians: &[FixturePedestrian]) -> (Window, Forecast) {
     let weights = hypotheses.clone().map(|(_, weight, _)| weight).collect();
     let forecast = Forecast::new(pedestrians.len(), pedestrians[0].2.len(), paths.collect(), weights, None);
     (window, forecast.unwrap())
+}
+
+/// A pedestrian of a window, among people who keep apart.
+pub(crate) fn walk(window: &Window, i: usize) -> ObservedWalk<'_> {
+    ObservedWalk { track: window.observed(i), crowding: 0.0 }
 }
 
 pub(crate) fn hypotheses(pedestrians: &[FixturePedestrian]) -> Vec<Hypotheses> {

@@ -1,7 +1,7 @@
 //! Who walks together, and how near people come to each other.
 
 use crate::energy::{Energy, closeness};
-use ddl_core::{OBSERVED, SpatialIndex, Window, distance};
+use ddl_core::{OBSERVED, Position, SpatialIndex, Window, distance};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -53,7 +53,7 @@ impl Company {
                 continue;
             }
             let [a, b] = [i, j].map(|one| window.observed(one));
-            let least = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).fold(f64::INFINITY, f64::min);
+            let least = least_distance(a, b);
             for one in [i, j] {
                 kept[one] = kept[one].min(least);
             }
@@ -106,6 +106,11 @@ impl Company {
             _ => None,
         })
     }
+}
+
+/// The least distance (m) of two observed tracks.
+pub(crate) fn least_distance(a: &[Position], b: &[Position]) -> f64 {
+    a.iter().zip(b).map(|(p, q)| distance(*p, *q)).fold(f64::INFINITY, f64::min)
 }
 
 /// Groups of at least two pedestrians of a window who walk together, as indices in ascending order: linked by pairs

@@ -1,14 +1,14 @@
 //! From the hypotheses of the pedestrians of a scene to K joint futures, each a mixture of hypotheses.
 
 use crate::energy::Energy;
-use crate::groups::{link, linked};
+use crate::groups::{Company, link, linked};
 use crate::hypotheses::Hypotheses;
 use crate::keeping_apart::keep_apart;
-use crate::pairs::{Pair, pairs_of};
+use crate::pairs::{ObservedWalk, Pair, pairs_of};
 use crate::parts::ScenePart;
 use crate::plan::Plan;
 use crate::{quantisation, sampling};
-use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianName, Position, Spread, TIME_STEP, Window};
+use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianName, Spread, TIME_STEP, Window};
 
 /// Samples of a scene.
 const SAMPLES: usize = 320;
@@ -112,8 +112,10 @@ impl<'a> JointScene<'a> {
         let mut order: Vec<usize> = (0..window.len()).collect();
         order.sort_by(|&i, &j| all[i].compare(&all[j]).then_with(|| name(window, i).cmp(&name(window, j))));
         let mut people: Vec<Hypotheses> = order.iter().map(|&i| all[i].clone()).collect();
-        let track = |&i: &usize| (!window.quality(i).is_hardly_observed()).then(|| window.observed(i));
-        let mut tracks: Vec<Option<&[Position]>> = order.iter().map(track).collect();
+        let crowding = Company::of(window).crowding;
+        let walk = |&i: &usize| ObservedWalk { track: window.observed(i), crowding: crowding[i] };
+        let known = |i: &usize| (!window.quality(*i).is_hardly_observed()).then(|| walk(i));
+        let mut walks: Vec<Option<ObservedWalk<'_>>> = order.iter().map(known).collect();
         if let Some(plan) = plan {
             let path = std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position);
             let radius = plan.largest_radius();
@@ -121,10 +123,10 @@ impl<'a> JointScene<'a> {
                 people[ego] = Hypotheses::certain(people[ego].present, &path, radius);
             } else {
                 people.push(Hypotheses::certain(plan.at(0.0).position, &path, radius));
-                tracks.push(None);
+                walks.push(None);
             }
         }
-        let pairs = pairs_of(Energy::learned(), &people, &tracks);
+        let pairs = pairs_of(Energy::learned(), &people, &walks);
         let parts = parts(&people, &pairs);
         let mut ranks = vec![0; people.len()];
         for (rank, &i) in parts.iter().flat_map(|part| part.iter().enumerate()) {

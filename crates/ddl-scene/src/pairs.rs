@@ -1,6 +1,7 @@
 //! The pairs of pedestrians that may meet or walk together, with a table of factors for each.
 
 use crate::energy::{Energy, PairEnergy};
+use crate::groups::least_distance;
 use crate::hypotheses::Hypotheses;
 use ddl_core::{HORIZON, Position, SpatialIndex, distance};
 use std::collections::BTreeSet;
@@ -28,12 +29,20 @@ impl Pair {
     }
 }
 
-/// The pairs of a scene. `tracks`: 8 observed positions of each pedestrian (m); `None` for one who was not observed,
-/// and so walks with nobody.
-pub(crate) fn pairs_of(energy: &Energy, people: &[Hypotheses], tracks: &[Option<&[Position]>]) -> Vec<Pair> {
+/// What is known of somebody who was observed.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ObservedWalk<'a> {
+    /// 8 positions, metres.
+    pub(crate) track: &'a [Position],
+    /// The share of people around who let others come near.
+    pub(crate) crowding: f64,
+}
+
+/// The pairs of a scene. `walks`: of each pedestrian; `None` for one who was not observed, and so walks with nobody.
+pub(crate) fn pairs_of(energy: &Energy, people: &[Hypotheses], walks: &[Option<ObservedWalk<'_>>]) -> Vec<Pair> {
     let near = near_pairs(energy, people);
-    let strength = |&(i, j): &(usize, usize)| match (tracks[i], tracks[j]) {
-        (Some(a), Some(b)) => energy.strength(a, b),
+    let strength = |&(i, j): &(usize, usize)| match (walks[i], walks[j]) {
+        (Some(a), Some(b)) => energy.strength(a.track, b.track),
         _ => 0.0,
     };
     let strengths: Vec<f32> = near.iter().map(strength).collect();
@@ -47,7 +56,12 @@ pub(crate) fn pairs_of(energy: &Energy, people: &[Hypotheses], tracks: &[Option<
         .filter_map(|((i, j), strength)| {
             let apart = distance(people[i].present, people[j].present);
             let radius = people[i].radius + people[j].radius;
-            let pair = energy.of_pair([apart, radius], strength, partners[i].max(partners[j]));
+            let (kept, crowding) = match (walks[i], walks[j]) {
+                (Some(a), Some(b)) => (least_distance(a.track, b.track), f64::midpoint(a.crowding, b.crowding)),
+                (one, other) => (apart, one.or(other).map_or(0.0, |walk| walk.crowding)),
+            };
+            let kept = [kept.min(apart), radius];
+            let pair = energy.of_pair(kept, crowding, strength, partners[i].max(partners[j]));
             let energies = table(&pair, &people[i], &people[j])?;
             Some(Pair {
                 first: i,

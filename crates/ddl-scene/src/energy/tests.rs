@@ -24,7 +24,7 @@ fn conflicts_by_hand() {
         ([3.0, 0.0], 1e-3, &[[0.0, 3.1], [0.1, 2.3], [0.4, 0.7], [0.7, 0.4]]),
     ];
     let reaches = cases.map(|(at, strength, conflicts)| {
-        let pair = energy().of_pair(at, strength, 2.0);
+        let pair = energy().of_pair(at, 0.2, strength, 2.0);
         for &[distance, expected] in conflicts {
             agree(pair.conflict(distance), expected);
         }
@@ -34,6 +34,10 @@ fn conflicts_by_hand() {
     for (found, expected) in reaches.into_iter().zip([1.0, 1.7, 1.2, 0.95, 1.0]) {
         agree(found, expected);
     }
+    // Halfway from 0.2 to 0.8 the distance is 0.3 m, from there on 0.2 m.
+    for (crowding, kept, expected) in [(0.5, 3.0, 0.3), (0.8, 3.0, 0.2), (1.0, 3.0, 0.2), (0.5, 0.25, 0.25)] {
+        agree(energy().of_pair([kept, 0.0], crowding, 0.0, 0.0).near, expected);
+    }
     assert_eq!((energy().reach(), energy().together_within()), (1.0, 4.0));
 }
 
@@ -41,7 +45,7 @@ fn conflicts_by_hand() {
 #[test]
 fn walking_apart_by_hand() {
     for (partners, divisor) in [(0.0, 1.0), (1.0, 1.0), (2.0, SQRT_2), (4.0, 2.0)] {
-        let [together, strangers] = [6.0, 0.0].map(|strength| energy().of_pair([3.0, 0.0], strength, partners));
+        let [together, strangers] = [6.0, 0.0].map(|strength| energy().of_pair([3.0, 0.0], 0.0, strength, partners));
         // 3 scale² is 0.75 m²: ln(1 + 2.25 / 0.75) = ln 4.
         agree(together.apart(2.25), 6.0 * 4.0_f32.ln() / divisor);
         agree(together.apart(0.0) + strangers.apart(2.25), 0.0);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::fixture::{energy, hypotheses, pedestrians, scene};
+use crate::fixture::{energy, hypotheses, pedestrians, scene, walk};
 use crate::pairs::pairs_of;
 
 /// The hypotheses that pedestrians follow in a future in which each was to follow its hypothesis 0.
@@ -7,8 +7,8 @@ fn followed(people: &str, plan: Option<Hypotheses>) -> Vec<usize> {
     let pedestrians = pedestrians(people);
     let (window, _) = scene(&pedestrians);
     let people: Vec<_> = hypotheses(&pedestrians).into_iter().chain(plan).collect();
-    let track = |i: usize| (i < window.len()).then(|| window.observed(i));
-    let pairs = pairs_of(&energy(), &people, &(0..people.len()).map(track).collect::<Vec<_>>());
+    let known = |i: usize| (i < window.len()).then(|| walk(&window, i));
+    let pairs = pairs_of(&energy(), &people, &(0..people.len()).map(known).collect::<Vec<_>>());
     let first = |one: &Hypotheses| [&[1.0], &vec![0.0; one.count() - 1][..]].concat();
     let mut shares: Vec<Vec<f32>> = people.iter().map(first).collect();
     let mut of_each: Vec<&mut [f32]> = shares.iter_mut().map(|shares| &mut shares[..]).collect();

@@ -56,7 +56,7 @@ fn a_plan_is_avoided_where_it_is_at_that_time() {
         })
     };
     // At a distance of 0 m the odds are divided by the exponential of the energy there.
-    let collided = (-f64::from(Energy::learned().of_pair([3.0, 0.0], 0.0, 0.0).conflict(0.0))).exp();
+    let collided = (-f64::from(Energy::learned().of_pair([3.0, 0.0], 0.0, 0.0, 0.0).conflict(0.0))).exp();
     let near = |found: &[f64], expected: [f64; 3]| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 0.01);
     let after = |odds: f64| [0.6 * odds, 0.3, 0.1].map(|weight| weight / (0.6 * odds + 0.4));
     // 1.6 s earlier or later it passes at more than 1.1 m, within reach of a radius of 1 m.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::fixture::walk;
 use crate::fixture::{FixturePedestrian, energy, hypotheses, pedestrians, scene};
 use crate::pairs::pairs_of;
 use ddl_core::distance;
@@ -69,8 +70,8 @@ fn scenes_are_as_likely_as_their_energies_say() {
 
     let people = hypotheses(&pedestrians);
     let (window, _) = scene(&pedestrians);
-    let tracks: Vec<_> = (0..N).map(|i| Some(window.observed(i))).collect();
-    let pairs = pairs_of(&energy(), &people, &tracks);
+    let walks: Vec<_> = (0..N).map(|i| Some(walk(&window, i))).collect();
+    let pairs = pairs_of(&energy(), &people, &walks);
     let count = 400_000;
     let chosen = samples(&people, &pairs, &[3, 1, 4, 1_000, 5, 9], count);
     let mut found = vec![0.0; scenes];
@@ -102,8 +103,8 @@ fn who_walks_together_or_may_meet_is_a_pair() {
         let (window, _) = scene(&pedestrians);
         let mut people = hypotheses(&pedestrians);
         people[1].radius = radius;
-        let tracks = [0, 1].map(|i| (i == 0 || radius == 0.0).then(|| window.observed(i)));
-        pairs_of(&energy(), &people, &tracks).len()
+        let walks = [0, 1].map(|i| (i == 0 || radius == 0.0).then(|| walk(&window, i)));
+        pairs_of(&energy(), &people, &walks).len()
     };
     assert_eq!([count(3.9, 0.0, [0.0; 2]), count(4.1, 0.0, [0.0; 2])], [1, 0]);
     assert_eq!([count(9.0, 8.1, [0.0; 2]), count(9.0, 7.9, [0.0; 2])], [1, 0]);
