@@ -36,7 +36,7 @@ pub use position::{
     is_finite, is_frame, is_frame_step,
 };
 pub use quality::{ObservationQuality, OtherObservation};
-pub use region::AdaptiveRegions;
+pub use region::{AdaptiveRegions, Holding};
 pub use region_table::{Disc, RegionTable};
 pub use representative::{average_displacement, medoid};
 pub use rotation::Rotation;

@@ -19,12 +19,15 @@
 mod adaptive;
 mod powers;
 mod tracked;
+mod whole;
 
 use crate::forecast::Forecast;
 use crate::position::Position;
 use crate::region_table::Disc;
 
 pub use adaptive::AdaptiveRegions;
+pub use whole::Holding;
+pub(crate) use whole::Wholes;
 
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::pace::Pace;
 use crate::position::{HORIZON, Position};
+use crate::region::Wholes;
 
 /// Quantiles of scores, for paces, levels and steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,6 +18,9 @@ pub(crate) struct LevelQuantiles {
     pub(crate) levels: Vec<f64>,
     /// For each [pace](Pace), slowest first: `[levels][12]`.
     pub(crate) quantiles: [Vec<[f64; HORIZON]>; Pace::ALL.len()],
+    /// `None` in tables of regions of single steps alone.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(crate) wholes: Option<Wholes>,
 }
 
 impl TryFrom<LevelQuantiles> for RegionTable {
@@ -30,7 +34,8 @@ impl TryFrom<LevelQuantiles> for RegionTable {
         let is_valid = !columns.levels.is_empty()
             && columns.levels.iter().all(inside)
             && columns.levels.is_sorted_by(|a, b| a < b)
-            && columns.quantiles.iter().all(of_levels);
+            && columns.quantiles.iter().all(of_levels)
+            && columns.wholes.iter().all(|wholes| wholes.is_valid(columns.levels.len()));
         if is_valid {
             Ok(Self(columns))
         } else {
@@ -70,7 +75,7 @@ impl RegionTable {
     /// `scores` `[3][pedestrians][12]`; `levels` ascending, in (0, 1), at least one. `None` otherwise.
     pub fn of(scores: &[&[[f64; HORIZON]]; Pace::ALL.len()], levels: &[f64]) -> Option<Self> {
         let [standing, slow, walking] = scores.map(|scores| split_conformal(scores, levels));
-        let columns = LevelQuantiles { levels: levels.to_vec(), quantiles: [standing?, slow?, walking?] };
+        let columns = LevelQuantiles { levels: levels.to_vec(), quantiles: [standing?, slow?, walking?], wholes: None };
         columns.try_into().ok()
     }
 
@@ -82,17 +87,22 @@ impl RegionTable {
 
     /// The quantile of a level, `t` + 1 steps ahead, linear between the levels; `None` beyond the [range](Self::range).
     pub fn quantile(&self, pace: Pace, level: f64, t: usize) -> Option<f64> {
-        let LevelQuantiles { levels, quantiles } = &self.0;
         let [lowest, highest] = self.range();
         if !(lowest..=highest).contains(&level) {
             return None;
         }
+        let (before, after, share) = self.between(level);
+        let [low, high] = [before, after].map(|row| self.0.quantiles[pace as usize][row][t]);
+        Some(low + share * (high - low))
+    }
+
+    /// The rows below and above a level in the range, and how far from the first to the second it is.
+    pub(crate) fn between(&self, level: f64) -> (usize, usize, f64) {
+        let levels = &self.0.levels;
         let after = levels.partition_point(|&l| l < level);
         let before = after.saturating_sub(1);
-        let [low, high] = [before, after].map(|row| quantiles[pace as usize][row][t]);
         let width = levels[after] - levels[before];
-        let share = if width > 0.0 { (level - levels[before]) / width } else { 0.0 };
-        Some(low + share * (high - low))
+        (before, after, if width > 0.0 { (level - levels[before]) / width } else { 0.0 })
     }
 }
 

@@ -10,6 +10,10 @@ prints the tables of docs/regions.md, and draws the curves of its figure as regi
 
 prints for each folder, forecast by a model that was not trained on it, the coverage of regions that were calibrated on
 the other folders, and writes the table of all folders to crates/ddl/src/trust/calibration.json.
+
+    python regions.py wholes MODEL:FOLDER=FPS ...
+
+writes there by which factors the regions of whole paths and of everybody at once are larger than those of that table.
 """
 
 import json
@@ -67,6 +71,8 @@ class Coverage:
     held: Floats  # (frames, 2, levels) of these inside the fixed and the adaptive regions
     radii: Floats  # (frames, 2, 2) sums over pedestrians for the levels HALF and MOST, metres
     of_paces: Floats  # (frames, 3, 5) positions seen, and of these inside the regions of HALF and MOST, of both kinds
+    wholes: Floats  # (frames, 2, 3, 4) of paths, scenes, and scenes without those who left: how many were judged, inside
+    # the regions of HALF and of MOST, and the sum over pedestrians of the radii for MOST (metres)
 
     @property
     def later(self) -> slice:
@@ -90,11 +96,25 @@ class Coverage:
         return np.array(points)
 
 
-def inside(forecast: ddl.Forecast, radii: Floats, ahead: Floats) -> Floats:
-    """(n,) how many of the later positions (n, 12, 2), NaN where unobserved, are inside the regions of these radii."""
+def inside(forecast: ddl.Forecast, radii: Floats, ahead: Floats) -> NDArray[np.bool_]:
+    """(n, 12) whether the later positions (n, 12, 2), NaN where unobserved, are inside the regions of these radii."""
     off = np.linalg.norm(ahead[:, None] - forecast.paths, axis=-1)
-    held: Floats = (off <= radii).any(axis=1).sum(axis=1)
+    held: NDArray[np.bool_] = (off <= radii).any(axis=1)
     return held
+
+
+def wholes_of(forecast: ddl.Forecast, ahead: Floats) -> list[list[float]]:
+    """The rows of ``Coverage.wholes`` for one frame and kind."""
+    unseen = np.isnan(ahead[..., 0])
+    known, throughout = ~unseen.all(axis=1), ~unseen.any(axis=1)
+    held, radius = {}, {}
+    for of in ("path", "scene"):
+        of_levels = [forecast.regions(LEVELS[level], of=of) for level in (HALF, MOST)]
+        held[of] = [(inside(forecast, radii, ahead) | unseen).all(axis=1) for radii in of_levels]
+        radius[of] = sum(map(equivalent_radius, forecast.paths[:, :, -1], of_levels[1][:, :, -1]))
+    paths = [throughout.sum(), *((one & throughout).sum() for one in held["path"]), radius["path"]]
+    groups = [[some.any(), *(some.any() and one[some].all() for one in held["scene"])] for some in (known, throughout)]
+    return [paths, *([*group, radius["scene"]] for group in groups)]
 
 
 def equivalent_radius(centres: Floats, radii: Floats, cells: int = 24) -> float:
@@ -108,22 +128,32 @@ def equivalent_radius(centres: Floats, radii: Floats, cells: int = 24) -> float:
     return float(np.sqrt(np.prod(high - low) * covered.mean() / np.pi))
 
 
-def forecasts(recording: ddl.Recording, model: str) -> Iterator[tuple[float, list[ddl.Forecast], Floats]]:
-    """For each frame its minute, the forecasts with fixed and adaptive regions, and the later positions."""
+def forecasts(
+    recording: ddl.Recording, model: str, *, live: bool = True
+) -> Iterator[tuple[float, list[ddl.Forecast], Floats]]:
+    """For each frame its minute, the forecasts with fixed and (``live``) adaptive regions, and the later positions."""
     forecaster = ddl.Forecaster(model)
     step = float(recording.frame_step)
     xy = np.stack([recording.x, recording.y], axis=1)
     rows = {int(number): np.flatnonzero(recording.frame == number) for number in np.unique(recording.frame)}
     tracks = {one: np.flatnonzero(recording.id == one) for one in np.unique(recording.id).tolist()}
+
+    def ahead(forecast: ddl.Forecast) -> Floats:
+        of_each = [tracks[one] for one in forecast.ids.tolist()]
+        return np.stack([later(recording.frame[of], xy[of], forecast.frame, step) for of in of_each])
+
+    def minute(number: float) -> float:
+        return float(number - recording.frame[0]) / step * STEP
+
     fixed = iter(forecaster.forecast_recording(recording, whole=True, every=0.4))
-    with ddl.Live(forecaster, fps=2.5 * step, whole=True, every=0.4) as live:
+    if not live:
+        yield from ((minute(one.frame), [one], ahead(one)) for one in fixed)
+        return
+    with ddl.Live(forecaster, fps=2.5 * step, whole=True, every=0.4) as place:
         for number, at in rows.items():
-            adaptive = live.observe(number, recording.id[at].tolist(), xy[at])
-            if adaptive is None:
-                continue
-            of_each = [tracks[one] for one in adaptive.ids.tolist()]
-            ahead = np.stack([later(recording.frame[of], xy[of], number, step) for of in of_each])
-            yield (number - recording.frame[0]) / step * STEP, [next(fixed), adaptive], ahead
+            adaptive = place.observe(number, recording.id[at].tolist(), xy[at])
+            if adaptive is not None:
+                yield minute(number), [next(fixed), adaptive], ahead(adaptive)
 
 
 def later(frames: Floats, track: Floats, number: int, step: float) -> Floats:
@@ -137,21 +167,22 @@ def later(frames: Floats, track: Floats, number: int, step: float) -> Floats:
 
 
 def coverage(recording: ddl.Recording, model: str) -> Coverage:
-    rows: list[tuple[float, int, int, Floats, list[list[float]], Floats]] = []
+    rows: list[tuple[float, int, int, Floats, list[list[float]], Floats, list[list[list[float]]]]] = []
     for minute, kinds, ahead in forecasts(recording, model):
         valid = [kind.valid for kind in kinds]
         assert all(mask.all() for mask in valid) and kinds[0].paths.shape == kinds[1].paths.shape
         held, sums = [], []
         for forecast in kinds:
             radii = [forecast.regions(level) for level in LEVELS]
-            held.append([inside(forecast, of_level, ahead) for of_level in radii])  # levels of pedestrians
+            held.append([inside(forecast, of_level, ahead).sum(axis=1) for of_level in radii])  # levels of pedestrians
             ends = [(forecast.paths[:, :, -1], radii[level][:, :, -1]) for level in (HALF, MOST)]
             sums.append([sum(map(equivalent_radius, centres, ends_of)) for centres, ends_of in ends])
         seen = (~np.isnan(ahead[..., 0])).sum(axis=1)
         of_each = [seen, *(kind[level] for kind in held for level in (HALF, MOST))]
         pace = paces(kinds[0].past)
         of_paces = np.array([[column[pace == which].sum() for column in of_each] for which in range(len(PACES))])
-        rows.append((minute, len(ahead), int(seen.sum()), np.array(held).sum(axis=2), sums, of_paces))
+        wholes = [wholes_of(forecast, ahead) for forecast in kinds]
+        rows.append((minute, len(ahead), int(seen.sum()), np.array(held).sum(axis=2), sums, of_paces, wholes))
     columns = [np.array(column, dtype=float) for column in zip(*rows, strict=True)]
     return Coverage(recording.name, model, *columns)
 
@@ -191,6 +222,24 @@ def table_of_paces(coverages: Sequence[Coverage]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def table_of_wholes(coverages: Sequence[Coverage]) -> str:
+    """Shares inside after the first quarter, and mean radii, of whole paths and of everybody."""
+    lines = ["| recording (model) | regions | paths | 90 % | 50 % | radius | moments | people | 90 % | 50 % | radius | stay |"]
+    lines.append("|" + "---|" * 12)
+    for one in coverages:
+        people, moments = one.people[one.later].sum(), len(one.people[one.later])
+        for kind, name in enumerate(KINDS):
+            paths, scenes, stay = one.wholes[one.later, kind].sum(axis=0)
+            of_paths, of_scenes = (
+                f"{judged:.0f} | {100 * most / judged:.1f} | {100 * half / judged:.1f} | {radius / people:.2f}"
+                for judged, half, most, radius in (paths, scenes)
+            )
+            number, shares = of_scenes.split(" | ", 1)
+            row = [f"{one.name} (`{one.model}`)" if kind == 0 else "", name, of_paths, number, f"{people / moments:.1f}"]
+            lines.append(f"| {' | '.join(row)} | {shares} | {100 * stay[2] / stay[0]:.1f} |")
+    return "\n".join(lines) + "\n"
+
+
 def draw(coverages: Sequence[Coverage], path: str) -> None:
     matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "regions", "font.size": 9})
     figure, axes = plt.subplots(-(-len(coverages) // 3), 3, figsize=(10, 5.4), sharey=True, layout="constrained")
@@ -221,8 +270,8 @@ def measure(star: str, places: Sequence[str]) -> None:
             minutes = (recording.frame[-1] - recording.frame[0]) / recording.frame_step * STEP
             if minutes >= SHORTEST and one.people.sum() >= FEWEST:
                 others.append(one)
-    print(f"# Recordings that are tested on\n\n{table(tested)}\n{table_of_paces(tested)}")
-    print(f"# Other recordings\n\n{table(others)}\n{table_of_paces(others)}")
+    print(f"# Recordings that are tested on\n\n{table(tested)}\n{table_of_paces(tested)}\n{table_of_wholes(tested)}")
+    print(f"# Other recordings\n\n{table(others)}\n{table_of_paces(others)}\n{table_of_wholes(others)}")
     draw(tested, "regions.svg")
 
 
@@ -262,6 +311,54 @@ def table_of(places: Sequence[tuple[NDArray[np.int64], Floats]], levels: Sequenc
     return np.array(tables)
 
 
+def moments(place: str) -> list[tuple[NDArray[np.int64], Floats]]:
+    """The paces and scores (n, 12) of each moment of a folder, NaN where a pedestrian was not seen."""
+    model, folder = place.split(":")
+    found = []
+    for recording in recordings_of(folder, model):
+        for _, [fixed], ahead in forecasts(recording, model, live=False):
+            found.append((paces(fixed.past), scores(fixed, ahead)))
+    return found
+
+
+def wholes(places: Sequence[str]) -> None:
+    """Fits the factors of crates/ddl-core/src/region/whole.rs; each place counts the same."""
+    file = Path(__file__).parents[2] / "ddl/src/trust/calibration.json"
+    constants: dict[str, Any] = json.loads(file.read_text())
+    most = CALIBRATED.index(0.9)
+    at_most = np.array(constants["regions"]["quantiles"])[:, most].clip(1e-3)  # (paces, 12)
+    of_places = [[(pace, score / at_most[pace]) for pace, score in moments(place)] for place in places]
+    whole = []
+    for of_place in of_places:
+        pace, largest = (np.concatenate(part) for part in zip(*((p, r.max(axis=1)) for p, r in of_place), strict=True))
+        known = ~np.isnan(largest)
+        whole.append((pace[known], np.repeat(largest[known, None], 12, axis=1)))
+    paths = table_of(whole, CALIBRATED)[:, :, 0]
+    rows: list[list[tuple[float, float]]] = [[] for _ in CALIBRATED]  # ln of the number and of the quantile
+    for of_place in of_places:
+        seen = [(len(pace), ratio / paths[pace, most, None]) for pace, ratio in of_place if not np.isnan(ratio).all()]
+        number, largest = np.array([(n, np.nanmax(ratio)) for n, ratio in seen]).T
+        classes = np.ceil(np.log2(number))  # 1, 2, 3 to 4, 5 to 8, ...
+        for which in np.unique(classes):
+            some = classes == which
+            if some.sum() >= LEAST:
+                for row, quantile in zip(rows, quantiles(largest[some, None], CALIBRATED)[:, 0].clip(1e-3), strict=True):
+                    row.append((float(np.log(number[some]).mean()), float(np.log(quantile))))
+    fits = [np.polyfit(*np.array(row).T, 1) for row in rows]
+    scenes = [[float(np.exp(one)), max(float(power), 0.0)] for power, one in fits]
+    print(f"paths\n{paths.round(2)}\nscenes, of one and power\n{np.round(scenes, 2)}\n{len(rows[0])} numbers and places")
+    constants["regions"]["wholes"] = {"paths": paths.round(4).tolist(), "scenes": np.round(scenes, 4).tolist()}
+    write(file, constants)
+
+
+def write(file: Path, constants: dict[str, Any]) -> None:
+    # Rows of numbers on one line each.
+    one_line = re.compile(r"\[[^][{}]*\]")
+    text = json.dumps(constants, indent=2) + "\n"
+    file.write_text(one_line.sub(lambda row: f"[{' '.join(row[0][1:-1].split())}]", text))
+    print(file)
+
+
 def calibrate(places: Sequence[str]) -> None:
     of_place = []
     for place in places:
@@ -280,12 +377,8 @@ def calibrate(places: Sequence[str]) -> None:
     file = Path(__file__).parents[2] / "ddl/src/trust/calibration.json"
     constants: dict[str, Any] = json.loads(file.read_text())
     rows = table_of(of_place, CALIBRATED).round(4).tolist()
-    constants["regions"] = {"levels": CALIBRATED, "quantiles": rows}
-    # Rows of numbers on one line each.
-    one_line = re.compile(r"\[[^][{}]*\]")
-    text = json.dumps(constants, indent=2) + "\n"
-    file.write_text(one_line.sub(lambda row: f"[{' '.join(row[0][1:-1].split())}]", text))
-    print(file)
+    constants["regions"] |= {"levels": CALIBRATED, "quantiles": rows}
+    write(file, constants)
 
 
 if __name__ == "__main__":
@@ -295,5 +388,7 @@ if __name__ == "__main__":
             measure(star, places)
         case ["calibrate", first, *places]:
             calibrate([first, *places])
+        case ["wholes", first, *places]:
+            wholes([first, *places])
         case _:
             sys.exit(__doc__)

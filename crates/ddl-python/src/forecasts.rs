@@ -5,7 +5,7 @@ use crate::errors::{ensure, of_any};
 use crate::moments::UserMoments;
 use crate::scene::FuturesHandle;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, TIME_STEP, Window};
-use ddl::{Answer, Forecast, ObservedPast, Pace, RegionTable, Spread};
+use ddl::{Answer, Forecast, Holding, ObservedPast, Pace, RegionTable, Spread};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -181,15 +181,20 @@ pub(crate) fn region_radii<'py>(
     weights: PyReadonlyArray2<'py, f64>,
     spread: PyReadonlyArray2<'py, f64>,
     region_table: &str,
-    level: f64,
+    wanted: (f64, &str),
 ) -> PyResult<Py<PyAny>> {
-    let (past, uncertainty) = observed;
+    let ((past, uncertainty), (level, of)) = (observed, wanted);
     let table: RegionTable = serde_json::from_str(region_table).map_err(of_any)?;
     let [low, high] = table.range();
     ensure!((low..=high).contains(&level), "level must be a probability from {low} to {high}; found {level}");
     let [n, k] = [weights.shape()[0], weights.shape()[1]];
     let rows = weights.as_array();
     let forecast_rows: Vec<usize> = (0..n).filter(|&i| !rows[[i, 0]].is_nan()).collect();
+    let invalid = |text: String| pyo3::exceptions::PyValueError::new_err(text);
+    let of_name = [Holding::Step, Holding::Path, Holding::Scene].into_iter().find(|holding| holding.name() == of);
+    let holding = of_name.ok_or_else(|| invalid(format!("of must be step, path or scene; found {of}")))?;
+    let table = table.holding(holding, forecast_rows.len());
+    let table = table.ok_or_else(|| invalid(format!("the forecast is of a version without regions of a {of}")))?;
     let mut radii = vec![f64::NAN; n * k * HORIZON];
     if !forecast_rows.is_empty() {
         let of_known = forecast_rows.iter().flat_map(|&i| rows.row(i).to_vec()).collect();

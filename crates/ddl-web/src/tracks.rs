@@ -105,5 +105,6 @@ pub(crate) fn lines(
     let moments = windows.iter().zip(answers).map(|(window, answer)| Moment::new(window, answer, clock));
     let moments: Vec<Moment<'_>> = moments.collect();
     motions.add(&moments);
-    Ok(ddl::json_lines(&moments, options.regions()?)?)
+    let regions = ddl::WantedRegions { levels: options.regions()?, ..Default::default() };
+    Ok(ddl::json_lines(&moments, regions)?)
 }

@@ -50,7 +50,7 @@ pub use ddl_star as star;
 
 pub use ddl_core::WorkDone;
 pub use ddl_core::{
-    AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, Pace, RegionTable, Spread, WeightedGoals,
+    AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, Holding, Pace, RegionTable, Spread, WeightedGoals,
 };
 pub use ddl_core::{Setting, word_settings};
 pub use ddl_network::{DeviceChoice, Variant};
@@ -90,6 +90,7 @@ pub use tracks::observed::{NobodyObserved, ObservedTracks, in_frames, misfits_of
 pub use tracks::past::ObservedPast;
 pub use tracks::timed::TimedRecording;
 pub use tracks::unfamiliar::UnfamiliarMotions;
+pub use tracks::wanted_regions::WantedRegions;
 pub use tracks::windows::{OutOfGap, WindowOptions};
 pub use trust::calibration::region_table;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;

@@ -8,4 +8,5 @@ pub(crate) mod observed;
 pub(crate) mod past;
 pub(crate) mod timed;
 pub(crate) mod unfamiliar;
+pub(crate) mod wanted_regions;
 pub(crate) mod windows;

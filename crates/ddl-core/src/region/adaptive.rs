@@ -7,7 +7,8 @@ use crate::pace::Pace;
 use crate::pedestrian::PedestrianId;
 use crate::position::{HORIZON, OBSERVED, Position, between};
 use crate::region::powers::{self, TrackedPowers};
-use crate::region::tracked::{Outcomes, TrackedQuantiles};
+use crate::region::tracked::{Moment, Outcomes, TrackedQuantiles};
+use crate::region::whole::{Holding, missed};
 use crate::region_table::RegionTable;
 use crate::window::Window;
 
@@ -55,6 +56,12 @@ struct Pending {
     /// `None` for those whose track has ended.
     pedestrians: Vec<Option<PedestrianId>>,
     forecast: Forecast,
+    /// The time since the frame before, in steps, at most 1.
+    share: f64,
+    /// `[N][12]`, NaN where a pedestrian was not seen.
+    scores: Vec<[f64; HORIZON]>,
+    /// The steps at which somebody was seen or could have been.
+    shown: [bool; HORIZON],
 }
 
 impl AdaptiveRegions {
@@ -95,17 +102,19 @@ impl AdaptiveRegions {
         }
         let share = self.pending.back().map_or(1.0, |last| ((now - last.frame) as f64 / step as f64).min(1.0));
         let previous = self.pending.back().map(|last| last.frame);
-        let judged = self.pending.iter();
+        let judged = self.pending.iter_mut();
         let outcomes: Vec<Outcomes> = judged.filter_map(|pending| pending.outcomes(window, previous)).collect();
         learned.learn(&outcomes, share);
         let ended = self.pending.iter().take_while(|first| first.is_over(now, step));
         let gradients: Vec<_> = ended.flat_map(|ended| ended.gradients(window, previous)).collect();
         self.powers.learn(gradients, share);
+        let ended = self.pending.iter().take_while(|first| first.is_over(now, step));
+        learned.learn_wholes(ended.filter_map(Pending::moment));
         let forecast = self.powers.raised(forecast).with_regions(learned.table());
         while self.pending.front().is_some_and(|first| first.is_over(now, step)) {
             self.pending.pop_front();
         }
-        self.pending.push_back(Pending::new(window, &forecast));
+        self.pending.push_back(Pending::new(window, &forecast, share));
         forecast
     }
 }
@@ -121,11 +130,14 @@ fn young(window: &Window) -> BTreeMap<PedestrianId, i64> {
 }
 
 impl Pending {
-    fn new(window: &Window, forecast: &Forecast) -> Self {
+    fn new(window: &Window, forecast: &Forecast, share: f64) -> Self {
         Self {
             frame: window.frames()[OBSERVED - 1],
             pedestrians: window.pedestrians().iter().copied().map(Some).collect(),
             forecast: forecast.clone(),
+            share,
+            scores: vec![[f64::NAN; HORIZON]; window.len()],
+            shown: [false; HORIZON],
         }
     }
 
@@ -159,13 +171,42 @@ impl Pending {
         Some((steps as usize - 1, seen.collect()))
     }
 
-    /// The scores of the pedestrians that were seen at a step of the forecast; `None` without any.
-    fn outcomes(&self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
+    /// The scores of the pedestrians that were seen at a step of the forecast, which it remembers; `None` without any.
+    fn outcomes(&mut self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
         let (step, seen) = self.seen(window, previous)?;
-        let score = |(i, position)| Some((self.forecast.pace(i)?, self.forecast.region_score(i, step, position)?));
+        self.shown[step] = true;
+        let score = |(i, position)| Some((i, self.forecast.pace(i)?, self.forecast.region_score(i, step, position)?));
         let scores: Vec<_> = seen.into_iter().filter_map(score).collect();
+        for &(i, _, score) in &scores {
+            self.scores[i][step] = score;
+        }
+        let scores: Vec<_> = scores.into_iter().map(|(_, pace, score)| (pace, score)).collect();
         let table = self.forecast.shared_regions()?;
         (!scores.is_empty()).then_some(Outcomes { step, table, scores })
+    }
+
+    /// What regions of whole paths and of everybody missed, once the forecast has ended. A path is judged if its
+    /// pedestrian was seen at the last step and at each one that a frame showed; the moment for all who were seen, as
+    /// long as they were. `None` if nobody was, and for tables without such regions.
+    fn moment(&self) -> Option<Moment> {
+        let table = self.forecast.regions()?;
+        let [path, scene] =
+            [Holding::Path, Holding::Scene].map(|holding| table.holding(holding, self.forecast.pedestrians()));
+        let (path, scene) = (path?, scene?);
+        let mut everybody = vec![false; table.0.levels.len()];
+        let mut paths = Vec::new();
+        for (i, scores) in self.scores.iter().enumerate().filter(|(_, scores)| scores.iter().any(|s| !s.is_nan())) {
+            let pace = self.forecast.pace(i)?;
+            for (all, one) in everybody.iter_mut().zip(missed(&scene, pace, scores)) {
+                *all |= one;
+            }
+            let is_whole = scores.iter().zip(self.shown).all(|(score, shown)| !shown || !score.is_nan());
+            if self.shown[HORIZON - 1] && is_whole {
+                paths.push((pace, missed(&path, pace, scores).collect()));
+            }
+        }
+        let anybody = self.scores.as_flattened().iter().any(|score| !score.is_nan());
+        anybody.then_some(Moment { share: self.share, paths, everybody })
     }
 
     /// The paces and gradients of the pedestrians that were seen at the end of the forecast.

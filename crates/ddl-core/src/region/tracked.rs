@@ -27,10 +27,13 @@ use std::sync::Arc;
 
 use crate::pace::Pace;
 use crate::position::HORIZON;
+use crate::region::whole::{LEAST, Wholes};
 use crate::region_table::{LevelQuantiles, RegionTable};
 
 /// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places.
 const STEP: f64 = 0.06;
+/// Step size of the shift of scenes, of which a frame has one. Chosen as [`STEP`].
+const SCENE_STEP: f64 = 0.1;
 /// Weight of a frame with nine pedestrians or more. Outcomes come up to 12 steps late; with a larger weight the
 /// quantiles of crowds oscillate.
 const LARGEST_WEIGHT: f64 = 3.0;
@@ -39,18 +42,24 @@ const LARGEST_WEIGHT: f64 = 3.0;
 const LARGEST_SHIFT: f64 = 4.158_883_083_359_672;
 /// Sum of the weights of a pace from which it learns from itself alone.
 const YOUTH: f64 = 30.0;
-/// Smallest quantile that is multiplied, so that a quantile of 0 can grow.
-const LEAST: f64 = 1e-3;
-
 /// A table of quantiles with their learned shifts.
 #[derive(Debug, Clone)]
 pub(super) struct TrackedQuantiles {
     start: Arc<RegionTable>,
-    /// For each pace `[levels][12]`, no unit.
-    shifts: [Vec<[f64; HORIZON]>; Pace::ALL.len()],
-    /// For each pace the sum of its weights.
-    learned: [[f64; HORIZON]; Pace::ALL.len()],
+    steps: [Shifts; HORIZON],
+    paths: Shifts,
+    /// One class: a moment is one outcome, and there are few.
+    scenes: Shifts,
     now: Arc<RegionTable>,
+}
+
+/// Shifts of the quantiles of classes, such as the paces.
+#[derive(Debug, Clone)]
+struct Shifts {
+    /// `[classes][levels]`, no unit.
+    rows: Vec<Vec<f64>>,
+    /// For each class the sum of its weights.
+    learned: Vec<f64>,
 }
 
 /// Scores of the positions at one frame under forecasts made `step` + 1 steps before it.
@@ -63,13 +72,46 @@ pub(super) struct Outcomes {
     pub(super) scores: Vec<(Pace, f64)>,
 }
 
+/// What the regions of a forecast that has ended missed, for each level.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Moment {
+    /// The time since the moment before, in steps, at most 1.
+    pub(super) share: f64,
+    /// Those of whole paths, one for each pedestrian.
+    pub(super) paths: Vec<(Pace, Vec<bool>)>,
+    pub(super) everybody: Vec<bool>,
+}
+
+impl Shifts {
+    fn new(classes: usize, levels: usize) -> Self {
+        Self { rows: vec![vec![0.0; levels]; classes], learned: vec![0.0; classes] }
+    }
+
+    /// Learns from the weight of each class, and the moves of its levels.
+    fn learn(&mut self, of_classes: &[(f64, Vec<f64>)]) {
+        for (index, shifts) in self.rows.iter_mut().enumerate() {
+            let young = (1.0 - self.learned[index] / YOUTH).max(0.0);
+            for (level, shift) in shifts.iter_mut().enumerate() {
+                let of_class = |(other, (_, moves)): (usize, &(f64, Vec<f64>))| {
+                    moves[level] * if other == index { 1.0 } else { young }
+                };
+                let moved = *shift + of_classes.iter().enumerate().map(of_class).sum::<f64>();
+                *shift = moved.clamp(-LARGEST_SHIFT, LARGEST_SHIFT);
+            }
+            self.learned[index] += of_classes[index].0;
+        }
+    }
+}
+
 impl TrackedQuantiles {
     /// The table with shifts of 0.
     #[must_use]
     pub(super) fn new(start: Arc<RegionTable>) -> Self {
+        let shifts = |classes| Shifts::new(classes, start.0.levels.len());
         Self {
-            shifts: Pace::ALL.map(|_| vec![[0.0; HORIZON]; start.0.levels.len()]),
-            learned: [[0.0; HORIZON]; Pace::ALL.len()],
+            steps: std::array::from_fn(|_| shifts(Pace::ALL.len())),
+            paths: shifts(Pace::ALL.len()),
+            scenes: shifts(1),
             now: Arc::clone(&start),
             start,
         }
@@ -83,25 +125,50 @@ impl TrackedQuantiles {
     /// Learns from all outcomes of one frame, `share` of a step (0 to 1) after the frame before.
     pub(super) fn learn(&mut self, outcomes: &[Outcomes], share: f64) {
         for outcomes in outcomes {
-            let step = outcomes.step;
-            let of_paces = Pace::ALL.map(|pace| outcomes.moves(pace, share));
-            for pace in Pace::ALL {
-                let index = pace as usize;
-                let young = (1.0 - self.learned[index][step] / YOUTH).max(0.0);
-                for (level, shifts) in self.shifts[index].iter_mut().enumerate() {
-                    let of_pace = |other: usize| {
-                        let (_, moves) = &of_paces[other];
-                        moves[level] * if other == index { 1.0 } else { young }
-                    };
-                    let moved = shifts[step] + (0..Pace::ALL.len()).map(of_pace).sum::<f64>();
-                    shifts[step] = moved.clamp(-LARGEST_SHIFT, LARGEST_SHIFT);
-                }
-                self.learned[index][step] += of_paces[index].0;
-            }
+            self.steps[outcomes.step].learn(&Pace::ALL.map(|pace| outcomes.moves(pace, share)));
         }
         if !outcomes.is_empty() {
-            self.now = shifted(&self.start, &self.shifts).into();
+            self.now = self.shifted().into();
         }
+    }
+
+    /// Learns from forecasts that have ended.
+    pub(super) fn learn_wholes(&mut self, moments: impl Iterator<Item = Moment>) {
+        let levels = self.start.0.levels.clone();
+        let mut is_new = false;
+        for Moment { share, paths, everybody } in moments {
+            let of_paces = Pace::ALL.map(|pace| {
+                let own = || paths.iter().filter(|(of, _)| *of == pace);
+                let (count, missed) = (own().count(), |level| own().filter(|(_, missed)| missed[level]).count());
+                moves(&levels, STEP, weight_of(count, share), |level| missed(level) as f64 / count.max(1) as f64)
+            });
+            self.paths.learn(&of_paces);
+            let of_everybody = |level| f64::from(u8::from(everybody[level]));
+            self.scenes.learn(&[moves(&levels, SCENE_STEP, weight_of(1, share), of_everybody)]);
+            is_new = true;
+        }
+        if is_new {
+            self.now = self.shifted().into();
+        }
+    }
+
+    /// The quantiles times the exponentials of their shifts, in ascending order over the levels.
+    fn shifted(&self) -> RegionTable {
+        let LevelQuantiles { levels, quantiles, wholes } = &self.start.0;
+        let of_pace = |pace: Pace| {
+            let column = |t: usize| {
+                let rows = quantiles[pace as usize].iter().map(|row| row[t]);
+                moved(rows, &self.steps[t].rows[pace as usize])
+            };
+            let columns: [Vec<f64>; HORIZON] = std::array::from_fn(column);
+            (0..levels.len()).map(|row| std::array::from_fn(|t| columns[t][row])).collect()
+        };
+        let wholes = wholes.as_ref().map(|Wholes { paths, scenes }| Wholes {
+            paths: Pace::ALL.map(|pace| moved(paths[pace as usize].iter().copied(), &self.paths.rows[pace as usize])),
+            // Their order over the levels depends on the number of pedestrians, and is made where that is known.
+            scenes: scenes.iter().zip(&self.scenes.rows[0]).map(|([b, c], s)| [b.max(LEAST) * s.exp(), *c]).collect(),
+        });
+        RegionTable(LevelQuantiles { levels: levels.clone(), quantiles: Pace::ALL.map(of_pace), wholes })
     }
 }
 
@@ -110,15 +177,17 @@ impl Outcomes {
     fn moves(&self, pace: Pace, share: f64) -> (f64, Vec<f64>) {
         let own = || self.scores.iter().filter(|(of, _)| *of == pace).map(|(_, score)| *score);
         let count = own().count();
-        let weight = weight_of(count, share);
-        let LevelQuantiles { levels, quantiles } = &self.table.0;
-        let rows = levels.iter().zip(&quantiles[pace as usize]);
-        let moves = rows.map(|(level, quantiles)| {
-            let missed = own().filter(|score| *score > quantiles[self.step]).count() as f64;
-            STEP * weight * (missed / count.max(1) as f64 - (1.0 - level))
-        });
-        (weight, moves.collect())
+        let LevelQuantiles { levels, quantiles, .. } = &self.table.0;
+        let quantile = |level: usize| quantiles[pace as usize][level][self.step];
+        let missed = |level| own().filter(|score| *score > quantile(level)).count();
+        moves(levels, STEP, weight_of(count, share), |level| missed(level) as f64 / count.max(1) as f64)
     }
+}
+
+/// The weight, and for each level the move of a shift whose regions missed this share.
+fn moves(levels: &[f64], step: f64, weight: f64, missed: impl Fn(usize) -> f64) -> (f64, Vec<f64>) {
+    let move_of = |(row, level): (usize, &f64)| step * weight * (missed(row) - (1.0 - level));
+    (weight, levels.iter().enumerate().map(move_of).collect())
 }
 
 /// The weight of the outcomes of `count` pedestrians, `share` of a step after the frame before.
@@ -126,28 +195,10 @@ pub(super) fn weight_of(count: usize, share: f64) -> f64 {
     share * (count as f64).sqrt().min(LARGEST_WEIGHT)
 }
 
-/// The quantiles times the exponentials of their shifts, in ascending order over the levels.
-fn shifted(start: &RegionTable, shifts: &[Vec<[f64; HORIZON]>; Pace::ALL.len()]) -> RegionTable {
-    let LevelQuantiles { levels, quantiles } = &start.0;
-    RegionTable(LevelQuantiles {
-        levels: levels.clone(),
-        quantiles: Pace::ALL.map(|pace| moved(&quantiles[pace as usize], &shifts[pace as usize])),
-    })
-}
-
-fn moved(quantiles: &[[f64; HORIZON]], shifts: &[[f64; HORIZON]]) -> Vec<[f64; HORIZON]> {
-    let mut moved: Vec<[f64; HORIZON]> = quantiles
-        .iter()
-        .zip(shifts)
-        .map(|(row, shifts)| std::array::from_fn(|t| row[t].max(LEAST) * shifts[t].exp()))
-        .collect();
-    for t in 0..HORIZON {
-        let mut column: Vec<f64> = moved.iter().map(|row| row[t]).collect();
-        column.sort_by(f64::total_cmp);
-        for (row, quantile) in moved.iter_mut().zip(column) {
-            row[t] = quantile;
-        }
-    }
+/// Quantiles of ascending levels, times the exponentials of their shifts, sorted.
+fn moved(quantiles: impl Iterator<Item = f64>, shifts: &[f64]) -> Vec<f64> {
+    let mut moved: Vec<f64> = quantiles.zip(shifts).map(|(q, shift)| q.max(LEAST) * shift.exp()).collect();
+    moved.sort_by(f64::total_cmp);
     moved
 }
 
@@ -165,6 +216,7 @@ mod tests {
         let columns = LevelQuantiles {
             levels: rows.iter().map(|row| row.0).collect(),
             quantiles: Pace::ALL.map(|_| rows.iter().map(|row| [row.1; HORIZON]).collect()),
+            wholes: None,
         };
         Arc::new(columns.try_into().unwrap())
     }

@@ -157,7 +157,7 @@ class Live:
     def close(self) -> str | None: ...
 
 def region_radii(
-    observed: tuple[Floats, Floats], weights: Floats, spread: Floats, region_table: str, level: float
+    observed: tuple[Floats, Floats], weights: Floats, spread: Floats, region_table: str, wanted: tuple[float, str]
 ) -> Floats: ...
 def write_forecasts(
     path: _Path, forecasts: Sequence[tuple[str, int, list[int], Floats, Floats, Floats, Floats | None]]

@@ -6,7 +6,7 @@ import os
 import warnings
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -312,10 +312,11 @@ class Forecast:
         mean: Floats = np.einsum("nk,nkts->nts", self.weights, self.paths)
         return mean
 
-    def regions(self, level: float = 0.9) -> Floats:
+    def regions(self, level: float = 0.9, *, of: Literal["step", "path", "scene"] = "step") -> Floats:
         """Radii (n, k, 12) in metres of regions with the probability ``level``.
 
-        With this probability the pedestrian is within the radius of at least one of ``paths``.
+        With this probability the pedestrian is within the radius of at least one of ``paths``: at one step, at all 12
+        (``"path"``), or all pedestrians of the forecast at all 12 (``"scene"``).
 
         NaN where a hypothesis has no disc. Calibrated on places that the model was not trained on.
 
@@ -326,7 +327,8 @@ class Forecast:
         """
         if self.spread is None or self._region_table is None:
             raise ValueError("this forecast has no regions: only the 20 hypotheses of a model have them")
-        return _core.region_radii((self.past, self.uncertainty), self.weights, self.spread, self._region_table, level)
+        observed, wanted = (self.past, self.uncertainty), (level, of)
+        return _core.region_radii(observed, self.weights, self.spread, self._region_table, wanted)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Columns of a table, one row per position, for ``pandas.DataFrame`` or ``polars.DataFrame``.

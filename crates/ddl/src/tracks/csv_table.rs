@@ -1,7 +1,8 @@
 //! Forecasts as csv: one row for each position.
 
 use crate::tracks::moment::Moment;
-use ddl_core::PedestrianName;
+use crate::tracks::wanted_regions::WantedRegions;
+use ddl_core::{Holding, PedestrianName};
 use ddl_data::FrameNumber;
 use serde::Serialize;
 
@@ -51,7 +52,7 @@ const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 ///
 /// # Errors
 /// A field that has no form in csv, which is a defect.
-pub fn csv_table(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> Result<String, csv::Error> {
+pub fn csv_table(moments: &[Moment<'_>], headed: bool, regions: WantedRegions<'_>) -> Result<String, csv::Error> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     if headed {
         let certified = moments.iter().any(|moment| !moment.answer.certificates().is_empty());
@@ -61,10 +62,15 @@ pub fn csv_table(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> Resul
         let joint = moments.iter().any(|moment| moment.answer.is_joint());
         let named = |name: &'static str| if joint && name == HYPOTHESIS { "future" } else { name };
         let names = columns.map(|&name| named(name).to_owned());
-        writer.write_record(names.chain(regions.iter().map(|level| format!("radius_{level}"))))?;
+        let prefix = match regions.holding {
+            Holding::Step => String::new(),
+            more => format!("{}_", more.name()),
+        };
+        writer.write_record(names.chain(regions.levels.iter().map(|level| format!("{prefix}radius_{level}"))))?;
     }
     for moment in moments {
         let (frames, forecast) = (moment.frames(), moment.answer.forecast());
+        let held = regions.of(forecast);
         // One field if the tracks name scenes, otherwise no field.
         let scene = Vec::from_iter(moment.scene);
         for i in 0..moment.window.len() {
@@ -94,8 +100,8 @@ pub fn csv_table(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> Resul
                         uncertainty: table_metres(quality.uncertainty()),
                         familiarity: forecast.familiarity(i).map(table_share),
                     };
-                    let radius = |&level: &f64| forecast.region_radius(i, hypothesis, t, level).map(table_metres);
-                    let radii: Vec<Option<f64>> = regions.iter().map(radius).collect();
+                    let radius = |&level: &f64| held.as_ref()?.region_radius(i, hypothesis, t, level).map(table_metres);
+                    let radii: Vec<Option<f64>> = regions.levels.iter().map(radius).collect();
                     match distances.as_mut().and_then(Iterator::next) {
                         None => writer.serialize((&scene, row, radii))?,
                         Some(distance) => {

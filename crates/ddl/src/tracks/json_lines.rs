@@ -2,7 +2,8 @@
 //! joint futures one object for each moment.
 
 use crate::tracks::moment::Moment;
-use ddl_core::{Disc, Forecast, HORIZON, PedestrianName};
+use crate::tracks::wanted_regions::WantedRegions;
+use ddl_core::{Disc, Forecast, HORIZON, Holding, PedestrianName};
 use ddl_data::{FrameNumber, SceneName};
 use ddl_dynamics::{LyapunovCertificate, Violation};
 use ddl_scene::{Futures, ScenePart};
@@ -66,9 +67,9 @@ struct ObservedPedestrian {
 }
 
 impl ObservedPedestrian {
-    fn of(moment: &Moment<'_>, i: usize, regions: &[f64]) -> Self {
+    fn of(moment: &Moment<'_>, i: usize, regions: WantedRegions<'_>, held: Option<&Forecast>) -> Self {
         let (forecast, quality) = (moment.answer.forecast(), moment.window.quality(i));
-        let regions = regions.iter();
+        let regions = regions.levels.iter().filter_map(|&level| Region::of(held?, i, level, regions.holding));
         Self {
             pedestrian: moment.window.name(i),
             unseen: quality.unseen,
@@ -76,7 +77,7 @@ impl ObservedPedestrian {
             uncertainty: quality.uncertainty(),
             familiarity: forecast.familiarity(i),
             spread: (0..HORIZON).filter_map(|t| forecast.scale(i, t)).collect(),
-            regions: regions.filter_map(|&probability| Region::of(forecast, i, probability)).collect(),
+            regions: regions.collect(),
         }
     }
 }
@@ -85,17 +86,21 @@ impl ObservedPedestrian {
 #[derive(Serialize)]
 struct Region {
     probability: f64,
+    /// Absent for single steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    holds: Option<&'static str>,
     discs: Vec<Vec<[f64; 3]>>,
 }
 
 impl Region {
-    fn of(forecast: &Forecast, i: usize, probability: f64) -> Option<Self> {
+    fn of(forecast: &Forecast, i: usize, probability: f64, holding: Holding) -> Option<Self> {
         let discs = |t: usize| {
             let region = forecast.region(i, t, probability)?;
             Some(region.iter().map(|disc: &Disc| [disc.centre[0], disc.centre[1], disc.radius]).collect())
         };
         let discs = (0..HORIZON).map(discs).collect::<Option<_>>()?;
-        Some(Self { probability, discs })
+        let holds = (holding != Holding::Step).then(|| holding.name());
+        Some(Self { probability, holds, discs })
     }
 }
 
@@ -160,20 +165,21 @@ impl<'a> MomentHead<'a> {
 ///
 /// # Errors
 /// A number that JSON does not have.
-pub fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, serde_json::Error> {
+pub fn json_lines(moments: &[Moment<'_>], regions: WantedRegions<'_>) -> Result<String, serde_json::Error> {
     let mut text = String::new();
     for moment in moments {
         if moment.answer.is_joint() {
             add_line(&scene_line(moment, regions), &mut text)?;
             continue;
         }
+        let forecast = moment.answer.forecast();
+        let held = regions.of(forecast);
         for i in 0..moment.window.len() {
-            let forecast = moment.answer.forecast();
             let hypotheses = (0..forecast.hypotheses())
                 .map(|k| Hypothesis { weight: forecast.weight(i, k), path: PathLine::of(moment, i, k) });
             let line = PedestrianLine {
                 moment: MomentHead::of(moment),
-                pedestrian: ObservedPedestrian::of(moment, i, regions),
+                pedestrian: ObservedPedestrian::of(moment, i, regions, held.as_deref()),
                 frames: moment.frames(),
                 hypotheses: hypotheses.collect(),
             };
@@ -183,12 +189,13 @@ pub fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> Result<String, ser
     Ok(text)
 }
 
-fn scene_line<'a>(moment: &Moment<'a>, regions: &[f64]) -> SceneLine<'a> {
+fn scene_line<'a>(moment: &Moment<'a>, regions: WantedRegions<'_>) -> SceneLine<'a> {
     let (pedestrians, forecast) = (0..moment.window.len(), moment.answer.forecast());
     let futures = (0..forecast.hypotheses()).map(|k| Future {
         weight: forecast.weight(0, k),
         paths: pedestrians.clone().map(|i| PathLine::of(moment, i, k)).collect(),
     });
+    let held = regions.of(forecast);
     let futures_of_scene = moment.answer.futures().ok();
     let parts = futures_of_scene.map_or(&[][..], Futures::parts).iter().map(ScenePart::pedestrians);
     let names = |members: &[usize]| members.iter().map(|&i| moment.window.name(i)).collect();
@@ -198,7 +205,7 @@ fn scene_line<'a>(moment: &Moment<'a>, regions: &[f64]) -> SceneLine<'a> {
         futures: futures.collect(),
         groups: futures_of_scene.map_or(&[][..], Futures::groups).iter().map(|group| names(group)).collect(),
         parts: parts.map(names).collect(),
-        pedestrians: pedestrians.map(|i| ObservedPedestrian::of(moment, i, regions)).collect(),
+        pedestrians: pedestrians.map(|i| ObservedPedestrian::of(moment, i, regions, held.as_deref())).collect(),
     }
 }
 

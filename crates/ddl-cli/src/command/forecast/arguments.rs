@@ -5,8 +5,8 @@ use crate::command::forecast::plans::GivenPlanOptions;
 use crate::command::forecast::state::StreamState;
 use crate::command::forecast::stream::{AnsweringCommand, OutputFormat, StreamOptions};
 use anyhow::bail;
-use clap::Args;
-use ddl::{Moment, Request, csv_table, json_lines};
+use clap::{Args, ValueEnum};
+use ddl::{Holding, Moment, Request, WantedRegions, csv_table, json_lines};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
 
@@ -58,6 +58,20 @@ pub(crate) struct ForecastCommand {
     #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability)]
     #[arg(conflicts_with = "one")]
     region: Vec<f64>,
+    /// What each region holds with its probability: the pedestrian at one step, on its whole path of 4.8 s, or all
+    /// pedestrians of the moment on their whole paths
+    ///
+    /// csv names the columns of the latter path_radius_ and scene_radius_, jsonl adds `holds` to the region.
+    #[arg(long, value_enum, default_value_t, requires = "region")]
+    region_holds: RegionHolds,
+}
+
+#[derive(Debug, Clone, Copy, Default, ValueEnum)]
+enum RegionHolds {
+    #[default]
+    Step,
+    Path,
+    Scene,
 }
 
 impl ForecastCommand {
@@ -104,9 +118,15 @@ impl AnsweringCommand for ForecastCommand {
 
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         let headed = state.is_first_text();
+        let holding = match self.region_holds {
+            RegionHolds::Step => Holding::Step,
+            RegionHolds::Path => Holding::Path,
+            RegionHolds::Scene => Holding::Scene,
+        };
+        let regions = WantedRegions { levels: &self.region, holding };
         match self.stream.format(self.format) {
-            OutputFormat::Csv => Ok(csv_table(moments, headed, &self.region)?),
-            OutputFormat::Jsonl => Ok(json_lines(moments, &self.region)?),
+            OutputFormat::Csv => Ok(csv_table(moments, headed, regions)?),
+            OutputFormat::Jsonl => Ok(json_lines(moments, regions)?),
         }
     }
 }
