@@ -62,4 +62,15 @@ fn the_regions_reach_their_probability_without_future_data() {
     let radius = |line: &Value| discs(line)[11][0][2];
     let differs = |(fixed, adapted): (&Value, &Value)| (radius(fixed) - radius(adapted)).abs() > 1e-9;
     assert!(last.iter().zip(from_all).all(differs));
+    let [paths, scenes]: [Vec<Value>; 2] = ["path", "scene"].map(|of| {
+        let held: Vec<Value> = json_lines(&place.ok(&format!("forecast all.csv {options} --region-holds {of}")));
+        assert!(held.iter().all(|line| line["regions"][0]["holds"] == of));
+        held
+    });
+    assert!(lines.iter().zip(&paths).all(|(step, path)| radius(step) <= radius(path)));
+    assert!(paths.iter().zip(&scenes).all(|(path, scene)| radius(path) <= radius(scene)));
+    let csv = place.ok("forecast all.csv --model hotel --frame-step 10 --last --region 0.9 --region-holds scene");
+    assert!(csv.lines().next().unwrap().ends_with(",scene_radius_0.9"));
+    let refused = place.run("forecast all.csv --frame-step 10 --region-holds path").fails();
+    assert!(refused.contains("--region"), "{refused}");
 }

@@ -23,6 +23,10 @@ def test_shapes_and_laws(forecaster, crossing):
     assert (forecast.certificates.min_eigenvalue > 0).all()
     assert forecast.most_likely().shape == forecast.mean().shape == (25, 12, 2)
     small, large = forecast.regions(0.5), forecast.regions(0.9)
+    path, scene = (np.nan_to_num(forecast.regions(0.9, of=of)) for of in ("path", "scene"))
+    assert (np.nan_to_num(large) < path).any() and (np.nan_to_num(large) <= path).all() and (path <= scene).all()
+    with pytest.raises(ValueError, match="step, path or scene"):
+        forecast.regions(of="crowd")  # type: ignore[arg-type]
     discs = ~np.isnan(small)
     assert discs.any(axis=1).all() and (large[discs] > small[discs]).all()
     one = forecaster.forecast(crossing, samples=1)

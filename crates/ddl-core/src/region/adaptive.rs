@@ -15,10 +15,10 @@ use crate::window::Window;
 /// Adapts the regions of the forecasts of one place so that they keep their coverage, and the weights to what their
 /// outcomes were. It takes every forecast, in order of time.
 ///
-/// The regions of a forecast `t` steps ahead are compared with the positions observed `t` steps later. The result
-/// changes all later regions. Pedestrians outside the window of that frame are skipped, as are tracks that began after
-/// the forecast: another person has taken the id. The result does not depend on the order of the pedestrians, or on
-/// later frames.
+/// The regions of a forecast `t` steps ahead are compared with the positions observed `t` steps later, those of [whole
+/// paths and scenes](crate::Holding) when the forecast has ended. The result changes all later regions. Pedestrians
+/// outside the window of that frame are skipped, as are tracks that began after the forecast: another person has taken
+/// the id. The result does not depend on the order of the pedestrians, or on later frames.
 ///
 /// It begins with the table of the first forecast that has one. Forecasts without regions are unchanged.
 ///
@@ -222,8 +222,12 @@ impl Pending {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+    use std::sync::Arc;
+
     use super::*;
     use crate::forecast::Spread;
+    use crate::region::Wholes;
+    use crate::region_table::LevelQuantiles;
 
     #[test]
     fn forecasts_without_regions_pass_the_first_has_its_table_and_few_are_pending() {
@@ -243,5 +247,37 @@ mod tests {
         }
         regions.clear();
         assert!(regions.pending.is_empty() && regions.table().is_some());
+    }
+
+    /// Two stand, one of whom leaves after five steps: paths are judged of the other alone, moments of both as long as
+    /// they are seen.
+    #[test]
+    fn who_leaves_counts_for_the_moment_and_not_as_a_path() {
+        let wholes = Wholes { paths: [(); 3].map(|()| vec![2.0]), scenes: vec![[1.5, 0.5]] };
+        let table = RegionTable::of(&[&[[0.5; HORIZON]; 9]; 3], &[0.5]).unwrap();
+        let regions: Arc<RegionTable> = RegionTable(LevelQuantiles { wholes: Some(wholes), ..table.0 }).into();
+        let at = |frame: i64, off: f64| {
+            let n = if frame > 5 { 1 } else { 2 };
+            let ids = [1, 2].map(PedestrianId);
+            let tracks = vec![[vec![[1.0, 2.0]; 7], vec![[1.0, 2.0 + off]]].concat(); n];
+            let window = Window::new("yard", frame - 7, 1, ids[..n].to_vec(), tracks).unwrap();
+            let spread = Spread {
+                scales: vec![0.7; n * HORIZON],
+                paces: [Pace::Slow, Pace::Standing][..n].to_vec(),
+                regions: Arc::clone(&regions),
+            };
+            let bare = Forecast::with_equal_weights(n, 1, vec![[1.0, 2.0]; n * HORIZON]).unwrap();
+            (window, bare.with_spread(spread).unwrap())
+        };
+        let mut adaptive = AdaptiveRegions::default();
+        for frame in 0..=12 {
+            // Both are outside at the third step, so whoever is judged was missed.
+            let (window, forecast) = at(frame, if frame == 3 { 5.0 } else { 0.0 });
+            let _ = adaptive.adapt(&window, forecast);
+        }
+        let wholes = adaptive.table().unwrap().0.wholes.clone().unwrap();
+        let expected = 2.0 * (0.06 * 0.5_f64).exp();
+        assert!(wholes.paths.iter().all(|row| (row[0] - expected).abs() < 1e-12), "{wholes:?}");
+        assert!((wholes.scenes[0][0] - 1.5 * (0.15 * 0.5_f64).exp()).abs() < 1e-12, "{wholes:?}");
     }
 }

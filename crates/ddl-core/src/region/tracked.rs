@@ -13,6 +13,11 @@
 //! others: as long as the sum W of its own `w` is below [`YOUTH`], their moves are added to its own, multiplied by
 //! `1 - W / YOUTH`.
 //!
+//! Whole paths and scenes (`whole.rs`) follow the same rule once a forecast has ended, with `share` the time from the
+//! forecast before it: paths of each pace, and moments with one shift for all, `n = 1` and the step [`SCENE_STEP`].
+//! `missed` is then the share of the paths that left their region, of those seen throughout; and 1 or 0 for a moment,
+//! whether anybody did as long as he was seen.
+//!
 //! As long as no shift reaches its bound, it is the sum of these moves. So from then on, the mean of `missed` of each
 //! pace, weighted by `w`, differs from `1 - a` by at most `2 LARGEST_SHIFT / (STEP sum w)`, for any motion of the
 //! pedestrians. If the quantiles of two levels cross, they are sorted; the bound then holds for the
@@ -33,7 +38,7 @@ use crate::region_table::{LevelQuantiles, RegionTable};
 /// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places.
 const STEP: f64 = 0.06;
 /// Step size of the shift of scenes, of which a frame has one. Chosen as [`STEP`].
-const SCENE_STEP: f64 = 0.1;
+const SCENE_STEP: f64 = 0.15;
 /// Weight of a frame with nine pedestrians or more. Outcomes come up to 12 steps late; with a larger weight the
 /// quantiles of crowds oscillate.
 const LARGEST_WEIGHT: f64 = 3.0;
@@ -211,6 +216,7 @@ mod tests {
     use proptest::{collection::vec, prelude::*};
 
     use super::*;
+    use crate::region::whole::Holding;
 
     fn table(rows: &[(f64, f64)]) -> Arc<RegionTable> {
         let columns = LevelQuantiles {
@@ -244,6 +250,47 @@ mod tests {
                     let untouched = tracked.table().quantile(pace, level, 1);
                     assert_eq!(untouched, tracked.start.quantile(pace, level, 1));
                 }
+            }
+        }
+    }
+
+    /// A table of the same quantiles for all steps and paces, with those of paths and scenes.
+    fn whole_table(levels: &[f64], quantiles: &[f64], paths: &[f64], scenes: &[[f64; 2]]) -> Arc<RegionTable> {
+        let rows: Vec<(f64, f64)> = levels.iter().copied().zip(quantiles.iter().copied()).collect();
+        let wholes = Wholes { paths: [(); 3].map(|()| paths.to_vec()), scenes: scenes.to_vec() };
+        Arc::new(LevelQuantiles { wholes: Some(wholes), ..table(&rows).0.clone() }.try_into().unwrap())
+    }
+
+    /// The numbers come from a numpy program, written from the formulas at the heads of this file and of `whole.rs`:
+    /// quantiles of paths of the levels 0.5 and 0.9 for those who walk, of 0.9 for those who are slow, and of scenes of
+    /// four for those who walk.
+    #[test]
+    fn four_moments_as_computed_elsewhere() {
+        let table = whole_table(&[0.5, 0.9], &[1.0, 4.0], &[0.5, 2.0], &[[0.4, 0.5], [1.2, 0.3]]);
+        let mut tracked = TrackedQuantiles::new(table);
+        let (none, low, both) = ([false, false], [true, false], [true, true]);
+        let of = |pace: Pace, paths: &[[bool; 2]]| paths.iter().map(|path| (pace, path.to_vec())).collect::<Vec<_>>();
+        let crowd = [of(Pace::Walking, &[both; 16]), of(Pace::Standing, &[none])].concat();
+        let expected = [
+            [2.034_942_755_728, 8.196_360_817_247, 8.196_360_817_247, 7.067_781_935_874, 17.062_790_835_701],
+            [2.034_942_755_728, 8.196_360_817_247, 8.196_360_817_247, 7.337_855_998_582, 16.935_298_597_944],
+            [2.164_522_406_031, 9.583_440_519_415, 9.580_121_293_177, 9.247_868_678_436, 22.663_292_117_991],
+            [2.164_522_406_031, 9.566_332_941_500, 9.559_820_327_023, 9.059_884_739_016, 22.538_158_688_927],
+        ];
+        let moments = [
+            (1.0, of(Pace::Walking, &[low, none, both]), both),
+            (0.5, Vec::new(), low),
+            (1.0, crowd, both),
+            (0.25, of(Pace::Slow, &[none, low]), none),
+        ];
+        for ((share, paths, everybody), expected) in moments.into_iter().zip(expected) {
+            tracked.learn_wholes([Moment { share, paths, everybody: everybody.to_vec() }].into_iter());
+            let [path, scene] = [Holding::Path, Holding::Scene].map(|of| tracked.table().holding(of, 4).unwrap());
+            let cells = [(&path, Pace::Walking, 0.5), (&path, Pace::Walking, 0.9), (&path, Pace::Slow, 0.9)];
+            let scenes = [(&scene, Pace::Walking, 0.5), (&scene, Pace::Walking, 0.9)];
+            for ((table, pace, level), expected) in cells.into_iter().chain(scenes).zip(expected) {
+                let found = table.quantile(pace, level, 7).unwrap();
+                assert!((found - expected).abs() < 1e-11, "{found} {expected}");
             }
         }
     }
@@ -299,6 +346,50 @@ mod tests {
             for (error, weights) in error.into_iter().zip(weights) {
                 prop_assert!(error.abs() <= 2.0 * LARGEST_SHIFT / STEP + 1e-9, "{error} {weights}");
             }
+        }
+
+        /// As above for whole paths and scenes, which are judged twelve frames later. Scores are beyond the regions of
+        /// steps, within which nothing is missed.
+        #[test]
+        fn the_share_of_paths_and_scenes_missed_is_bounded_for_any_stream(
+            level in 0.05..0.95f64,
+            frames in vec((vec((0..3usize, any::<bool>()), 0..9), any::<bool>(), 0.1..1.0f64), 1..600),
+            run in 1..50usize,
+        ) {
+            let mut tracked = TrackedQuantiles::new(whole_table(&[level], &[2.0], &[1.5], &[[1.25, 0.5]]));
+            let mut issued = VecDeque::from(vec![Arc::clone(tracked.table()); HORIZON]);
+            let (mut learned, mut error, mut of_scenes) = ([0.0; 3], [0.0; 3], 0.0);
+            for (at, (judged, coin, share)) in frames.iter().enumerate() {
+                let table = issued.pop_front().unwrap();
+                let misses = |coin: bool, salt: usize| match (at / run + salt) % 3 {
+                    2 => coin,
+                    mood => mood == 0,
+                };
+                let missed = |holding, pace, wanted: bool, most: f64| {
+                    let edge = table.holding(holding, judged.len()).unwrap().quantile(pace, level, 3).unwrap();
+                    (if wanted { edge * 1.1 } else { edge / 1.1 }).clamp(2.0 + 1e-9, most) > edge
+                };
+                let path = |&(pace, coin): &(usize, bool)| {
+                    let pace = Pace::ALL[pace];
+                    (pace, vec![missed(Holding::Path, pace, misses(coin, pace as usize), 20.0)])
+                };
+                let paths: Vec<(Pace, Vec<bool>)> = judged.iter().map(path).collect();
+                let everybody = vec![missed(Holding::Scene, Pace::Slow, misses(*coin, 1), 40.0)];
+                for pace in 0..3 {
+                    let own = || paths.iter().filter(|(of, _)| *of as usize == pace);
+                    let (count, missed) = (own().count() as f64, own().filter(|(_, missed)| missed[0]).count() as f64);
+                    let weight = share * count.sqrt().min(3.0);
+                    if learned[pace] >= YOUTH {
+                        error[pace] += weight * (missed / count.max(1.0) - (1.0 - level));
+                    }
+                    learned[pace] += weight;
+                }
+                of_scenes += share * (f64::from(u8::from(everybody[0])) - (1.0 - level));
+                tracked.learn_wholes([Moment { share: *share, paths, everybody }].into_iter());
+                issued.push_back(Arc::clone(tracked.table()));
+            }
+            prop_assert!(error.iter().all(|error| error.abs() <= 2.0 * LARGEST_SHIFT / STEP + 1e-9), "{error:?}");
+            prop_assert!(of_scenes.abs() <= 2.0 * LARGEST_SHIFT / SCENE_STEP + 1e-9, "{of_scenes}");
         }
 
         #[test]

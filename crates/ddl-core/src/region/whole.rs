@@ -120,3 +120,87 @@ pub(super) fn missed<'a>(table: &'a RegionTable, pace: Pace, scores: &'a [f64; H
     let rows = table.0.quantiles[pace as usize].iter();
     rows.map(|quantiles| scores.iter().zip(quantiles).any(|(score, quantile)| score > quantile))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+    use proptest::{collection::vec, prelude::*};
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn regions_of_more_contain_those_of_less(
+            steps in vec(0.0..9.0f64, 3),
+            paths in vec(0.0..9.0f64, 3),
+            scenes in vec((0.0..9.0f64, 0.0..1.0f64), 3),
+            (fewer, more) in (0..40usize, 0..5000usize),
+            level in 0.1..0.95f64,
+        ) {
+            let sorted = |mut numbers: Vec<f64>| {
+                numbers.sort_by(f64::total_cmp);
+                numbers
+            };
+            let (steps, paths) = (sorted(steps), sorted(paths));
+            let columns = LevelQuantiles {
+                levels: vec![0.1, 0.5, 0.95],
+                quantiles: Pace::ALL.map(|_| steps.iter().map(|q| std::array::from_fn(|t| q * t as f64)).collect()),
+                wholes: Some(Wholes {
+                    paths: Pace::ALL.map(|_| paths.clone()),
+                    scenes: scenes.into_iter().map(|(b, c)| [b, c]).collect(),
+                }),
+            };
+            let table: RegionTable = columns.try_into().unwrap();
+            let held = |holding, number| table.holding(holding, number).unwrap();
+            let tables = [
+                held(Holding::Step, fewer),
+                held(Holding::Path, fewer),
+                held(Holding::Scene, fewer),
+                held(Holding::Scene, fewer + more),
+            ];
+            for t in 0..HORIZON {
+                let of_level = |level| tables.each_ref().map(|table| table.quantile(Pace::Slow, level, t).unwrap());
+                let (quantiles, lower) = (of_level(level), of_level(0.1 + 0.5 * (level - 0.1)));
+                prop_assert!(quantiles.is_sorted_by(|a, b| *a <= b + 1e-9), "{quantiles:?}");
+                prop_assert!(lower.iter().zip(quantiles).all(|(low, high)| *low <= high + 1e-9), "nested");
+            }
+            prop_assert_eq!(held(Holding::Path, fewer), held(Holding::Path, more), "a path is of one");
+            prop_assert_eq!(held(Holding::Path, fewer).holding(Holding::Scene, 3), None);
+        }
+    }
+
+    /// By hand: 4 is the common quantile of steps, 2 that of paths, and 16 pedestrians have 1.5 times 16 to the power
+    /// 0.5.
+    #[test]
+    fn tables_are_read_and_refused() {
+        let of = |wholes: &str| {
+            let row = "[[1,1,1,1,1,1,1,1,1,1,1,1], [4,4,4,4,4,4,4,4,4,4,4,4]]";
+            let text = format!(r#"{{"levels": [0.5, 0.9], "quantiles": [{row}, {row}, {row}]{wholes}}}"#);
+            serde_json::from_str::<RegionTable>(&text)
+        };
+        let table =
+            of(r#", "wholes": {"paths": [[0.1, 2], [0.5, 2], [3, 2]], "scenes": [[0, 0], [1.5, 0.5]]}"#).unwrap();
+        let quantile = |holding, pace, level| table.holding(holding, 16).unwrap().quantile(pace, level, 2).unwrap();
+        for (holding, pace, level, expected) in [
+            (Holding::Path, Pace::Standing, 0.5, 1.0),
+            (Holding::Path, Pace::Standing, 0.9, 8.0),
+            (Holding::Path, Pace::Slow, 0.5, 2.0),
+            (Holding::Scene, Pace::Slow, 0.5, 2.0),
+            (Holding::Scene, Pace::Slow, 0.9, 48.0),
+        ] {
+            assert!((quantile(holding, pace, level) - expected).abs() < 1e-12);
+        }
+        let old = of("").unwrap();
+        assert_eq!(old.holding(Holding::Step, 3).as_ref(), Some(&old));
+        assert_eq!(old.holding(Holding::Path, 3), None);
+        for wholes in [
+            r#"{"paths": [[1, 2], [1, 2], [1]], "scenes": [[1, 0], [1, 0]]}"#,
+            r#"{"paths": [[1, 2], [1, 2], [1, -2]], "scenes": [[1, 0], [1, 0]]}"#,
+            r#"{"paths": [[1, 2], [1, 2], [1, 2]], "scenes": [[1, 0]]}"#,
+            r#"{"paths": [[1, 2], [1, 2], [1, 2]], "scenes": [[1, 0], [1, 4.5]]}"#,
+        ] {
+            assert!(of(&format!(r#", "wholes": {wholes}"#)).is_err(), "{wholes}");
+        }
+    }
+}

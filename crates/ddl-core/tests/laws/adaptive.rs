@@ -24,7 +24,12 @@ fn table() -> Arc<RegionTable> {
         let score = |n: i32| f64::from(n) / (40.0 + 10.0 * f64::from(pace as u8));
         (1..100).map(|n| std::array::from_fn(|t| score(n) * (1.0 + 0.05 * t as f64))).collect()
     });
-    Arc::new(RegionTable::of(&scores.each_ref().map(Vec::as_slice), &LEVELS).unwrap())
+    let table = RegionTable::of(&scores.each_ref().map(Vec::as_slice), &LEVELS).unwrap();
+    let mut json = serde_json::to_value(table).unwrap();
+    // Of whole paths and scenes, which do not change those of steps.
+    json["wholes"] = serde_json::json!({"paths": [[0.4, 0.8, 1.7], [0.5, 0.9, 1.6], [0.4, 0.7, 1.9]],
+        "scenes": [[0.2, 0.4], [0.5, 0.5], [1.1, 0.3]]});
+    Arc::new(serde_json::from_value(json).unwrap())
 }
 
 /// The pedestrians at a frame: most of fourteen, one of whom is another one from time to time.
@@ -69,10 +74,10 @@ fn moment(at: i64, frame: i64, draws: &mut Draws, regions: &Arc<RegionTable>) ->
     (window.with_qualities(qualities), forecast)
 }
 
-/// The same pedestrians in the opposite order.
+/// The same pedestrians in the opposite order, with other ids.
 fn turned(window: &Window, forecast: &Forecast) -> (Window, Forecast) {
     let order: Vec<usize> = (0..window.len()).rev().collect();
-    let (ids, start) = (order.iter().map(|&i| window.pedestrians()[i]), window.start_frame());
+    let (ids, start) = (order.iter().map(|&i| PedestrianId(99 - window.pedestrians()[i].0)), window.start_frame());
     let tracks = order.iter().map(|&i| window.observed(i).to_vec()).collect();
     let turned = Window::new("yard", start, STEP, ids.collect(), tracks).unwrap();
     let qualities = order.iter().map(|&i| window.quality(i)).collect();

@@ -61,7 +61,7 @@ pub(crate) struct ForecastCommand {
     /// What each region holds with its probability: the pedestrian at one step, on its whole path of 4.8 s, or all
     /// pedestrians of the moment on their whole paths
     ///
-    /// csv names the columns of the latter path_radius_ and scene_radius_, jsonl adds `holds` to the region.
+    /// csv names the columns `path_radius_0.9` and `scene_radius_0.9`, jsonl adds `holds` to the region.
     #[arg(long, value_enum, default_value_t, requires = "region")]
     region_holds: RegionHolds,
 }
