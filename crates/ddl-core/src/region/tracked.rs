@@ -20,8 +20,8 @@
 //!
 //! As long as no shift reaches its bound, it is the sum of these moves. So from then on, the mean of `missed` of each
 //! pace, weighted by `w`, differs from `1 - a` by at most `2 LARGEST_SHIFT / (STEP sum w)`, for any motion of the
-//! pedestrians. If the quantiles of two levels cross, they are sorted; the bound then holds for the
-//! levels together.
+//! pedestrians. If the quantiles of two levels cross, they are sorted; the bound then holds for the levels together.
+//! Those of paths and scenes are raised to the level below instead ([`rising`]), so that it holds for each.
 //!
 //! # References
 //! - Gibbs and Candes, *Adaptive Conformal Inference Under Distribution Shift*, 2021.
@@ -32,7 +32,7 @@ use std::sync::Arc;
 
 use crate::pace::Pace;
 use crate::position::HORIZON;
-use crate::region::whole::{LEAST, Wholes};
+use crate::region::whole::{LEAST, Wholes, rising};
 use crate::region_table::{LevelQuantiles, RegionTable};
 
 /// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places.
@@ -157,19 +157,25 @@ impl TrackedQuantiles {
         }
     }
 
-    /// The quantiles times the exponentials of their shifts, in ascending order over the levels.
+    /// The quantiles with their shifts, in ascending order over the levels.
     fn shifted(&self) -> RegionTable {
         let LevelQuantiles { levels, quantiles, wholes } = &self.start.0;
         let of_pace = |pace: Pace| {
             let column = |t: usize| {
                 let rows = quantiles[pace as usize].iter().map(|row| row[t]);
-                moved(rows, &self.steps[t].rows[pace as usize])
+                let mut column: Vec<f64> = moved(rows, &self.steps[t].rows[pace as usize]).collect();
+                column.sort_by(f64::total_cmp);
+                column
             };
             let columns: [Vec<f64>; HORIZON] = std::array::from_fn(column);
             (0..levels.len()).map(|row| std::array::from_fn(|t| columns[t][row])).collect()
         };
-        let wholes = wholes.as_ref().map(|Wholes { paths, scenes }| Wholes {
-            paths: Pace::ALL.map(|pace| moved(paths[pace as usize].iter().copied(), &self.paths.rows[pace as usize])),
+        let path = |pace: Pace| {
+            let factors = wholes.iter().flat_map(|wholes| &wholes.paths[pace as usize]);
+            rising(moved(factors.copied(), &self.paths.rows[pace as usize]))
+        };
+        let wholes = wholes.as_ref().map(|Wholes { scenes, .. }| Wholes {
+            paths: Pace::ALL.map(path),
             // Their order over the levels depends on the number of pedestrians, and is made where that is known.
             scenes: scenes.iter().zip(&self.scenes.rows[0]).map(|([b, c], s)| [b.max(LEAST) * s.exp(), *c]).collect(),
         });
@@ -200,11 +206,9 @@ pub(super) fn weight_of(count: usize, share: f64) -> f64 {
     share * (count as f64).sqrt().min(LARGEST_WEIGHT)
 }
 
-/// Quantiles of ascending levels, times the exponentials of their shifts, sorted.
-fn moved(quantiles: impl Iterator<Item = f64>, shifts: &[f64]) -> Vec<f64> {
-    let mut moved: Vec<f64> = quantiles.zip(shifts).map(|(q, shift)| q.max(LEAST) * shift.exp()).collect();
-    moved.sort_by(f64::total_cmp);
-    moved
+/// Quantiles times the exponentials of their shifts.
+fn moved(quantiles: impl Iterator<Item = f64>, shifts: &[f64]) -> impl Iterator<Item = f64> {
+    quantiles.zip(shifts).map(|(q, shift)| q.max(LEAST) * shift.exp())
 }
 
 #[cfg(test)]
@@ -348,48 +352,52 @@ mod tests {
             }
         }
 
-        /// As above for whole paths and scenes, which are judged twelve frames later. Scores are beyond the regions of
-        /// steps, within which nothing is missed.
+        /// As above for whole paths and scenes, which are judged twelve frames later, at two levels that may cross.
+        /// Scores are beyond the regions of steps, within which nothing is missed.
         #[test]
         fn the_share_of_paths_and_scenes_missed_is_bounded_for_any_stream(
             level in 0.05..0.95f64,
             frames in vec((vec((0..3usize, any::<bool>()), 0..9), any::<bool>(), 0.1..1.0f64), 1..600),
             run in 1..50usize,
         ) {
-            let mut tracked = TrackedQuantiles::new(whole_table(&[level], &[2.0], &[1.5], &[[1.25, 0.5]]));
+            let levels = [0.7 * level, level];
+            let start = whole_table(&levels, &[2.0; 2], &[1.5; 2], &[[1.25, 0.5]; 2]);
+            let mut tracked = TrackedQuantiles::new(start);
             let mut issued = VecDeque::from(vec![Arc::clone(tracked.table()); HORIZON]);
-            let (mut learned, mut error, mut of_scenes) = ([0.0; 3], [0.0; 3], 0.0);
+            let (mut learned, mut error, mut of_scenes) = ([0.0; 3], [[0.0; 2]; 3], [0.0; 2]);
             for (at, (judged, coin, share)) in frames.iter().enumerate() {
                 let table = issued.pop_front().unwrap();
-                let misses = |coin: bool, salt: usize| match (at / run + salt) % 3 {
-                    2 => coin,
-                    mood => mood == 0,
-                };
-                let missed = |holding, pace, wanted: bool, most: f64| {
-                    let edge = table.holding(holding, judged.len()).unwrap().quantile(pace, level, 3).unwrap();
-                    (if wanted { edge * 1.1 } else { edge / 1.1 }).clamp(2.0 + 1e-9, most) > edge
+                let missed = |holding, pace, coin: bool, most: f64| {
+                    let held = table.holding(holding, judged.len()).unwrap();
+                    let edges = levels.map(|level| held.quantile(pace, level, 3).unwrap());
+                    let mood = (at / run + pace as usize) % 3;
+                    let misses = if mood == 2 { coin } else { mood == 0 };
+                    let wanted = edges[at % 2] * if misses { 1.1 } else { 1.0 / 1.1 };
+                    edges.map(|edge| wanted.clamp(2.0 + 1e-9, most) > edge).to_vec()
                 };
                 let path = |&(pace, coin): &(usize, bool)| {
-                    let pace = Pace::ALL[pace];
-                    (pace, vec![missed(Holding::Path, pace, misses(coin, pace as usize), 20.0)])
+                    (Pace::ALL[pace], missed(Holding::Path, Pace::ALL[pace], coin, 20.0))
                 };
                 let paths: Vec<(Pace, Vec<bool>)> = judged.iter().map(path).collect();
-                let everybody = vec![missed(Holding::Scene, Pace::Slow, misses(*coin, 1), 40.0)];
+                let everybody = missed(Holding::Scene, Pace::Slow, *coin, 40.0);
                 for pace in 0..3 {
                     let own = || paths.iter().filter(|(of, _)| *of as usize == pace);
-                    let (count, missed) = (own().count() as f64, own().filter(|(_, missed)| missed[0]).count() as f64);
-                    let weight = share * count.sqrt().min(3.0);
-                    if learned[pace] >= YOUTH {
-                        error[pace] += weight * (missed / count.max(1.0) - (1.0 - level));
+                    let weight = share * (own().count() as f64).sqrt().min(3.0);
+                    for (row, error) in error[pace].iter_mut().enumerate().filter(|_| learned[pace] >= YOUTH) {
+                        let missed = own().filter(|(_, missed)| missed[row]).count() as f64;
+                        *error += weight * (missed / own().count().max(1) as f64 - (1.0 - levels[row]));
                     }
                     learned[pace] += weight;
                 }
-                of_scenes += share * (f64::from(u8::from(everybody[0])) - (1.0 - level));
+                for (row, error) in of_scenes.iter_mut().enumerate() {
+                    *error += share * (f64::from(u8::from(everybody[row])) - (1.0 - levels[row]));
+                }
                 tracked.learn_wholes([Moment { share: *share, paths, everybody }].into_iter());
                 issued.push_back(Arc::clone(tracked.table()));
             }
-            prop_assert!(error.iter().all(|error| error.abs() <= 2.0 * LARGEST_SHIFT / STEP + 1e-9), "{error:?}");
-            prop_assert!(of_scenes.abs() <= 2.0 * LARGEST_SHIFT / SCENE_STEP + 1e-9, "{of_scenes}");
+            let is_near = |error: &f64, step: f64| error.abs() <= 2.0 * LARGEST_SHIFT / step + 1e-9;
+            prop_assert!(error.as_flattened().iter().all(|error| is_near(error, STEP)), "{error:?}");
+            prop_assert!(of_scenes.iter().all(|error| is_near(error, SCENE_STEP)), "{of_scenes:?}");
         }
 
         #[test]

@@ -81,8 +81,7 @@ impl RegionTable {
         }
         let Wholes { paths, scenes } = wholes.as_ref()?;
         let of_scene = |[b, c]: &[f64; 2]| b * (pedestrians.max(1) as f64).powf(*c);
-        let mut of_scenes: Vec<f64> = scenes.iter().map(of_scene).collect();
-        of_scenes.sort_by(f64::total_cmp);
+        let of_scenes = rising(scenes.iter().map(of_scene));
         let of_cell = |pace: Pace, row: usize, t: usize| {
             let paths = &paths[pace as usize];
             let common = self.common(|level| self.0.quantiles[pace as usize][level][t]).max(LEAST);
@@ -113,6 +112,17 @@ impl Forecast {
         let table = self.regions()?.holding(holding, self.pedestrians())?;
         Some(self.clone().with_regions(&table.into()))
     }
+}
+
+/// The numbers of ascending levels, each at least those before it. Sorting them would give a level the number that
+/// another one has learned: where levels cross often, as those of scenes, both then drift without effect.
+pub(super) fn rising(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut most = 0.0;
+    let rise = |number: f64| {
+        most = number.max(most);
+        most
+    };
+    numbers.map(rise).collect()
 }
 
 /// The levels at which regions missed one of the scores `[12]`, NaN where the pedestrian was not seen.
