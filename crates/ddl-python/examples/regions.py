@@ -71,7 +71,9 @@ class Coverage:
     held: Floats  # (frames, 2, levels) of these inside the fixed and the adaptive regions
     radii: Floats  # (frames, 2, 2) sums over pedestrians for the levels HALF and MOST, metres
     of_paces: Floats  # (frames, 3, 5) positions seen, and of these inside the regions of HALF and MOST, of both kinds
-    wholes: Floats  # (frames, 2, 3, 4) of paths, scenes, and scenes without those who left: how many were judged, inside
+    wholes: (
+        Floats  # (frames, 2, 3, 4) of paths, scenes, and scenes without those who left: how many were judged, inside
+    )
     # the regions of HALF and of MOST, and the sum over pedestrians of the radii for MOST (metres)
 
     @property
@@ -224,8 +226,8 @@ def table_of_paces(coverages: Sequence[Coverage]) -> str:
 
 def table_of_wholes(coverages: Sequence[Coverage]) -> str:
     """Shares inside after the first quarter, and mean radii, of whole paths and of everybody."""
-    lines = ["| recording (model) | regions | paths | 90 % | 50 % | radius | moments | people | 90 % | 50 % | radius | stay |"]
-    lines.append("|" + "---|" * 12)
+    heads = "paths | 90 % | 50 % | radius | moments | people | 90 % | 50 % | radius | stay"
+    lines = [f"| recording (model) | regions | {heads} |", "|" + "---|" * 12]
     for one in coverages:
         people, moments = one.people[one.later].sum(), len(one.people[one.later])
         for kind, name in enumerate(KINDS):
@@ -235,7 +237,13 @@ def table_of_wholes(coverages: Sequence[Coverage]) -> str:
                 for judged, half, most, radius in (paths, scenes)
             )
             number, shares = of_scenes.split(" | ", 1)
-            row = [f"{one.name} (`{one.model}`)" if kind == 0 else "", name, of_paths, number, f"{people / moments:.1f}"]
+            row = [
+                f"{one.name} (`{one.model}`)" if kind == 0 else "",
+                name,
+                of_paths,
+                number,
+                f"{people / moments:.1f}",
+            ]
             lines.append(f"| {' | '.join(row)} | {shares} | {100 * stay[2] / stay[0]:.1f} |")
     return "\n".join(lines) + "\n"
 
@@ -342,11 +350,12 @@ def wholes(places: Sequence[str]) -> None:
         for which in np.unique(classes):
             some = classes == which
             if some.sum() >= LEAST:
-                for row, quantile in zip(rows, quantiles(largest[some, None], CALIBRATED)[:, 0].clip(1e-3), strict=True):
+                found = quantiles(largest[some, None], CALIBRATED)[:, 0].clip(1e-3)
+                for row, quantile in zip(rows, found, strict=True):
                     row.append((float(np.log(number[some]).mean()), float(np.log(quantile))))
-    fits = [np.polyfit(*np.array(row).T, 1) for row in rows]
-    scenes = [[float(np.exp(one)), max(float(power), 0.0)] for power, one in fits]
-    print(f"paths\n{paths.round(2)}\nscenes, of one and power\n{np.round(scenes, 2)}\n{len(rows[0])} numbers and places")
+    fits = [np.polyfit([n for n, _ in row], [q for _, q in row], 1).tolist() for row in rows]
+    scenes = [[float(np.exp(one)), max(power, 0.0)] for power, one in fits]
+    print("paths", paths.round(2), "scenes, of one and power", np.round(scenes, 2), sep="\n")
     constants["regions"]["wholes"] = {"paths": paths.round(4).tolist(), "scenes": np.round(scenes, 4).tolist()}
     write(file, constants)
 

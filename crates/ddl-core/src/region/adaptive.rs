@@ -145,24 +145,24 @@ impl Pending {
         now - self.frame >= HORIZON as i64 * frame_step
     }
 
-    /// The last step of the forecast up to the last observed frame of the window, and the positions of its pedestrians
-    /// there; `None` if an earlier window has shown that step.
-    fn seen<'a>(&'a self, window: &'a Window, previous: Option<i64>) -> Option<(usize, Vec<(usize, Position)>)> {
+    /// The last step of the forecast up to the last observed frame of the window, or one `ago` steps before it, and the
+    /// positions of its pedestrians there; `None` if an earlier window has shown that step.
+    fn seen(&self, window: &Window, previous: Option<i64>, ago: usize) -> Option<(usize, Vec<(usize, Position)>)> {
         let (now, frame_step) = (window.frames()[OBSERVED - 1], window.frame_step());
         let after = now - self.frame;
-        let (steps, back) = (after / frame_step, after % frame_step);
+        let share = (after % frame_step) as f64 / frame_step as f64;
+        let (steps, back) = (after / frame_step - ago as i64, after % frame_step + ago as i64 * frame_step);
         let is_new = back == 0 || previous.is_some_and(|previous| previous < now - back);
         if !(is_new && (1..=HORIZON as i64).contains(&steps)) {
             return None;
         }
-        let share = back as f64 / frame_step as f64;
         let position = |id: &PedestrianId| -> Option<Position> {
             let i = window.pedestrians().iter().position(|other| other == id)?;
             // A position that is carried on was not observed.
             if window.quality(i).age > 0.0 {
                 return None;
             }
-            let [.., before, last] = *window.observed(i) else {
+            let [.., before, last] = *window.observed(i).get(..OBSERVED - ago)? else {
                 return None;
             };
             Some(between(last, before, share))
@@ -171,16 +171,26 @@ impl Pending {
         Some((steps as usize - 1, seen.collect()))
     }
 
-    /// The scores of the pedestrians that were seen at a step of the forecast, which it remembers; `None` without any.
-    fn outcomes(&mut self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
-        let (step, seen) = self.seen(window, previous)?;
-        self.shown[step] = true;
-        let score = |(i, position)| Some((i, self.forecast.pace(i)?, self.forecast.region_score(i, step, position)?));
-        let scores: Vec<_> = seen.into_iter().filter_map(score).collect();
-        for &(i, _, score) in &scores {
-            self.scores[i][step] = score;
+    /// Notes the scores at the steps of the forecast since the frame before. Where frames are further apart than steps,
+    /// these are several.
+    fn note(&mut self, window: &Window, previous: Option<i64>) {
+        for ago in 0..OBSERVED - 1 {
+            let Some((step, seen)) = self.seen(window, previous, ago) else {
+                continue;
+            };
+            self.shown[step] = true;
+            for (i, position) in seen {
+                self.scores[i][step] = self.forecast.region_score(i, step, position).unwrap_or(f64::NAN);
+            }
         }
-        let scores: Vec<_> = scores.into_iter().map(|(_, pace, score)| (pace, score)).collect();
+    }
+
+    /// The scores of the pedestrians that were seen at a step of the forecast; `None` without any.
+    fn outcomes(&mut self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
+        self.note(window, previous);
+        let (step, seen) = self.seen(window, previous, 0)?;
+        let score = |(i, _): (usize, Position)| Some((self.forecast.pace(i)?, self.scores[i][step]));
+        let scores: Vec<_> = seen.into_iter().filter_map(score).collect();
         let table = self.forecast.shared_regions()?;
         (!scores.is_empty()).then_some(Outcomes { step, table, scores })
     }
@@ -211,7 +221,7 @@ impl Pending {
 
     /// The paces and gradients of the pedestrians that were seen at the end of the forecast.
     fn gradients(&self, window: &Window, previous: Option<i64>) -> Vec<(Pace, f64)> {
-        let ended = self.seen(window, previous).filter(|(step, _)| *step == HORIZON - 1);
+        let ended = self.seen(window, previous, 0).filter(|(step, _)| *step == HORIZON - 1);
         let (_, seen) = ended.unwrap_or_default();
         let gradient = |(i, end)| Some((self.forecast.pace(i)?, powers::gradient(&self.forecast, i, end)));
         seen.into_iter().filter_map(gradient).collect()
@@ -256,11 +266,13 @@ mod tests {
         let wholes = Wholes { paths: [(); 3].map(|()| vec![2.0]), scenes: vec![[1.5, 0.5]] };
         let table = RegionTable::of(&[&[[0.5; HORIZON]; 9]; 3], &[0.5]).unwrap();
         let regions: Arc<RegionTable> = RegionTable(LevelQuantiles { wholes: Some(wholes), ..table.0 }).into();
-        let at = |frame: i64, off: f64| {
+        let at = |frame: i64| {
             let n = if frame > 5 { 1 } else { 2 };
-            let ids = [1, 2].map(PedestrianId);
-            let tracks = vec![[vec![[1.0, 2.0]; 7], vec![[1.0, 2.0 + off]]].concat(); n];
-            let window = Window::new("yard", frame - 7, 1, ids[..n].to_vec(), tracks).unwrap();
+            // Both are outside in the third frame, so whoever is judged was missed.
+            let place = |frame: i64| if frame == 3 { [1.0, 7.0] } else { [1.0, 2.0] };
+            let track: Vec<Position> = (frame - 7..=frame).map(place).collect();
+            let ids = [1, 2].map(PedestrianId)[..n].to_vec();
+            let window = Window::new("yard", frame - 7, 1, ids, vec![track; n]).unwrap();
             let spread = Spread {
                 scales: vec![0.7; n * HORIZON],
                 paces: [Pace::Slow, Pace::Standing][..n].to_vec(),
@@ -269,13 +281,15 @@ mod tests {
             let bare = Forecast::with_equal_weights(n, 1, vec![[1.0, 2.0]; n * HORIZON]).unwrap();
             (window, bare.with_spread(spread).unwrap())
         };
-        let mut adaptive = AdaptiveRegions::default();
-        for frame in 0..=12 {
-            // Both are outside at the third step, so whoever is judged was missed.
-            let (window, forecast) = at(frame, if frame == 3 { 5.0 } else { 0.0 });
-            let _ = adaptive.adapt(&window, forecast);
-        }
-        let wholes = adaptive.table().unwrap().0.wholes.clone().unwrap();
+        // Steps between frames are in the windows of later ones.
+        let [wholes, seldom] = [(0..=12).collect(), vec![0, 2, 4, 5, 8, 12]].map(|frames: Vec<i64>| {
+            let mut adaptive = AdaptiveRegions::default();
+            for (window, forecast) in frames.into_iter().map(at) {
+                let _ = adaptive.adapt(&window, forecast);
+            }
+            adaptive.table().unwrap().0.wholes.clone().unwrap()
+        });
+        assert_eq!(wholes, seldom);
         let expected = 2.0 * (0.06 * 0.5_f64).exp();
         assert!(wholes.paths.iter().all(|row| (row[0] - expected).abs() < 1e-12), "{wholes:?}");
         assert!((wholes.scenes[0][0] - 1.5 * (0.15 * 0.5_f64).exp()).abs() < 1e-12, "{wholes:?}");
