@@ -142,7 +142,7 @@ impl Energy {
         }
     }
 
-    /// The energy of a pair that kept this distance (m), of this radius (m), where this share of people lets others come
+    /// The energy of a pair that kept this distance, of this radius (m), where this share of people lets others come
     /// near, whose [strength](Self::strength) is divided among partners.
     pub(crate) fn of_pair(&self, [kept, radius]: [f64; 2], crowding: f64, strength: f32, partners: f32) -> PairEnergy {
         let Conflict { near: [sparse, dense], crowding: [from, to], .. } = self.conflict;
