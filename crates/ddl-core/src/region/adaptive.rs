@@ -60,8 +60,6 @@ struct Pending {
     share: f64,
     /// `[N][12]`, NaN where a pedestrian was not seen.
     scores: Vec<[f64; HORIZON]>,
-    /// The steps at which somebody was seen or could have been.
-    shown: [bool; HORIZON],
 }
 
 impl AdaptiveRegions {
@@ -102,7 +100,9 @@ impl AdaptiveRegions {
         }
         let share = self.pending.back().map_or(1.0, |last| ((now - last.frame) as f64 / step as f64).min(1.0));
         let previous = self.pending.back().map(|last| last.frame);
-        let judged = self.pending.iter_mut();
+        let places = (0..window.len()).map(|i| (window.pedestrians()[i], i)).collect();
+        self.pending.iter_mut().for_each(|pending| pending.note(window, &places));
+        let judged = self.pending.iter();
         let outcomes: Vec<Outcomes> = judged.filter_map(|pending| pending.outcomes(window, previous)).collect();
         learned.learn(&outcomes, share);
         let ended = self.pending.iter().take_while(|first| first.is_over(now, step));
@@ -137,7 +137,6 @@ impl Pending {
             forecast: forecast.clone(),
             share,
             scores: vec![[f64::NAN; HORIZON]; window.len()],
-            shown: [false; HORIZON],
         }
     }
 
@@ -145,24 +144,24 @@ impl Pending {
         now - self.frame >= HORIZON as i64 * frame_step
     }
 
-    /// The last step of the forecast up to the last observed frame of the window, or one `ago` steps before it, and the
-    /// positions of its pedestrians there; `None` if an earlier window has shown that step.
-    fn seen(&self, window: &Window, previous: Option<i64>, ago: usize) -> Option<(usize, Vec<(usize, Position)>)> {
+    /// The last step of the forecast up to the last observed frame of the window, and the positions of its pedestrians
+    /// there; `None` if an earlier window has shown that step.
+    fn seen(&self, window: &Window, previous: Option<i64>) -> Option<(usize, Vec<(usize, Position)>)> {
         let (now, frame_step) = (window.frames()[OBSERVED - 1], window.frame_step());
         let after = now - self.frame;
-        let share = (after % frame_step) as f64 / frame_step as f64;
-        let (steps, back) = (after / frame_step - ago as i64, after % frame_step + ago as i64 * frame_step);
+        let (steps, back) = (after / frame_step, after % frame_step);
         let is_new = back == 0 || previous.is_some_and(|previous| previous < now - back);
         if !(is_new && (1..=HORIZON as i64).contains(&steps)) {
             return None;
         }
+        let share = back as f64 / frame_step as f64;
         let position = |id: &PedestrianId| -> Option<Position> {
             let i = window.pedestrians().iter().position(|other| other == id)?;
             // A position that is carried on was not observed.
             if window.quality(i).age > 0.0 {
                 return None;
             }
-            let [.., before, last] = *window.observed(i).get(..OBSERVED - ago)? else {
+            let [.., before, last] = *window.observed(i) else {
                 return None;
             };
             Some(between(last, before, share))
@@ -171,24 +170,33 @@ impl Pending {
         Some((steps as usize - 1, seen.collect()))
     }
 
-    /// Notes the scores at the steps of the forecast since the frame before. Where frames are further apart than steps,
-    /// these are several.
-    fn note(&mut self, window: &Window, previous: Option<i64>) {
-        for ago in 0..OBSERVED - 1 {
-            let Some((step, seen)) = self.seen(window, previous, ago) else {
+    /// Notes the scores at the steps up to now that are not known. These are several for a pedestrian of whom rows were
+    /// doubted or missing, as those of surprising motions are, and where frames are further apart than steps.
+    fn note(&mut self, window: &Window, places: &BTreeMap<PedestrianId, usize>) {
+        let (after, frame_step) = (window.frames()[OBSERVED - 1] - self.frame, window.frame_step());
+        let (steps, share) = ((after / frame_step) as usize, (after % frame_step) as f64 / frame_step as f64);
+        for (i, id) in self.pedestrians.iter().enumerate() {
+            let Some(&place) = id.as_ref().and_then(|id| places.get(id)) else {
                 continue;
             };
-            self.shown[step] = true;
-            for (i, position) in seen {
-                self.scores[i][step] = self.forecast.region_score(i, step, position).unwrap_or(f64::NAN);
+            let quality = window.quality(place);
+            let observed = &window.observed(place)[quality.unseen.min(OBSERVED - 2)..];
+            for (ago, &[before, last]) in observed.array_windows().rev().enumerate().filter(|_| quality.age <= 0.0) {
+                let Some(score) = steps.checked_sub(ago + 1).and_then(|step| self.scores[i].get_mut(step)) else {
+                    continue;
+                };
+                if !score.is_nan() {
+                    break;
+                }
+                let at = between(last, before, share);
+                *score = self.forecast.region_score(i, steps - ago - 1, at).unwrap_or(f64::NAN);
             }
         }
     }
 
     /// The scores of the pedestrians that were seen at a step of the forecast; `None` without any.
-    fn outcomes(&mut self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
-        self.note(window, previous);
-        let (step, seen) = self.seen(window, previous, 0)?;
+    fn outcomes(&self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
+        let (step, seen) = self.seen(window, previous)?;
         let score = |(i, _): (usize, Position)| Some((self.forecast.pace(i)?, self.scores[i][step]));
         let scores: Vec<_> = seen.into_iter().filter_map(score).collect();
         let table = self.forecast.shared_regions()?;
@@ -196,8 +204,7 @@ impl Pending {
     }
 
     /// What regions of whole paths and of everybody missed, once the forecast has ended. A path is judged if its
-    /// pedestrian was seen at the last step and at each one that a frame showed; the moment for all who were seen, as
-    /// long as they were. `None` if nobody was, and for tables without such regions.
+    /// pedestrian was seen at all steps; the moment for all who were seen, as long as they were. `None` if nobody was, and for tables without such regions.
     fn moment(&self) -> Option<Moment> {
         let table = self.forecast.regions()?;
         let [path, scene] =
@@ -210,8 +217,7 @@ impl Pending {
             for (all, one) in everybody.iter_mut().zip(missed(&scene, pace, scores)) {
                 *all |= one;
             }
-            let is_whole = scores.iter().zip(self.shown).all(|(score, shown)| !shown || !score.is_nan());
-            if self.shown[HORIZON - 1] && is_whole {
+            if scores.iter().all(|score| !score.is_nan()) {
                 paths.push((pace, missed(&path, pace, scores).collect()));
             }
         }
@@ -221,7 +227,7 @@ impl Pending {
 
     /// The paces and gradients of the pedestrians that were seen at the end of the forecast.
     fn gradients(&self, window: &Window, previous: Option<i64>) -> Vec<(Pace, f64)> {
-        let ended = self.seen(window, previous, 0).filter(|(step, _)| *step == HORIZON - 1);
+        let ended = self.seen(window, previous).filter(|(step, _)| *step == HORIZON - 1);
         let (_, seen) = ended.unwrap_or_default();
         let gradient = |(i, end)| Some((self.forecast.pace(i)?, powers::gradient(&self.forecast, i, end)));
         seen.into_iter().filter_map(gradient).collect()
