@@ -204,7 +204,8 @@ impl Pending {
     }
 
     /// What regions of whole paths and of everybody missed, once the forecast has ended. A path is judged if its
-    /// pedestrian was seen at all steps; the moment for all who were seen, as long as they were. `None` if nobody was, and for tables without such regions.
+    /// pedestrian was seen at all steps; the moment for all who were seen, as long as they were. `None` if nobody was,
+    /// and for tables without such regions.
     fn moment(&self) -> Option<Moment> {
         let table = self.forecast.regions()?;
         let [path, scene] =
