@@ -12,8 +12,8 @@
 //! P(somebody)             = 1 - prod (1 - P(somebody of the part))
 //! ```
 //!
-//! Who sees a plan responds to it (`response.rs`): odds of a pedestrian are divided, and companions of who follows the
-//! plan have other weights of their hypotheses and samples.
+//! Pedestrians who see a plan respond to it (`response.rs`): the odds that each comes close are divided by a factor,
+//! and the hypotheses and samples of those who walk with the pedestrian on the plan get other weights.
 //!
 //! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
 //! results depend on nothing but their input. Less than 1/64 of one hypothesis may count as 0.
@@ -33,7 +33,7 @@ use ddl_core::HORIZON;
 use quadrature::DEVIATIONS;
 pub(crate) use quadrature::probability;
 use rayon::prelude::*;
-use response::{PlanResponse, Response, responses};
+use response::{PlanResponse, Response, SeenPlan, responses};
 use std::array::from_fn;
 use std::borrow::Cow;
 
@@ -63,7 +63,6 @@ impl Futures {
     /// For each plan, how likely somebody comes within `within` metres of its edge, if nobody sees it. The pedestrian
     /// `ego` who follows the plan, if there is one, is no risk to itself.
     ///
-    /// A thousand plans among 25 pedestrians with 20 hypotheses take some 60 ms on one core.
     /// The result does not depend on the number of threads, nor on which other plans there are.
     ///
     /// # Errors
@@ -75,7 +74,7 @@ impl Futures {
     /// [`risks`](Self::risks), where pedestrians see the plan and keep away from it as people do from each other.
     ///
     /// The odds that a stranger comes close are divided by a factor learned from recordings in which a pedestrian plays
-    /// the robot. Those who walk with the `ego` go on as the plan does, and keep the distance that they kept. The
+    /// the robot. Those who walk with the `ego` move as far as the plan does, at the distance that they kept. The
     /// factor depends on the distance between centres, which is `within` plus the largest radius of the plan; of
     /// strangers it is 1 from 1.5 m on. Pedestrians who are close at the moment itself, or may be, keep the probability
     /// of that, and those seen for the first time theirs.
@@ -105,7 +104,8 @@ impl Futures {
         }
         let crowd = CrowdAtRisk::new(self)?;
         let risk = |plan: &Plan| {
-            let respond = |i: usize| responses.get(i).unwrap_or(&Response::None).to(plan, within, self, i);
+            let seen = SeenPlan::new(plan, within);
+            let respond = |i: usize| responses.get(i).unwrap_or(&Response::None).to(&seen, self, i);
             self.risk(&crowd, &crowd.sweep(plan, within), respond, ego)
         };
         Ok(plans.par_iter().map(risk).collect())

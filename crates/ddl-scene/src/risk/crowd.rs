@@ -31,6 +31,8 @@ pub(super) struct CrowdAtRisk {
     origin: Position,
     /// `[K]`: the deviations from each hypothesis, exactly and in blocks.
     deviations: Vec<(Quadrature, DeviationBlocks)>,
+    /// None of the deviations is longer, in scales.
+    outermost: f32,
     /// `[N]`: the part of the scene that each pedestrian belongs to.
     parts: Vec<usize>,
     /// `[N][K]`: probabilities of the hypotheses.
@@ -98,10 +100,8 @@ impl CrowdAtRisk {
         let rings = (0..n).map(around).collect();
         let present: Vec<Position> = (0..n).map(|i| futures.present(i)).collect();
         let lanes_of = |(i, step, first): (usize, usize, usize)| {
-            // Lanes without a hypothesis are far from everything.
-            let at = |axis: usize, k: usize| match paths.get(k * n + i) {
-                Some(path) => (path[step][axis] - present[i][axis]) as f32,
-                None => f32::MAX.sqrt(),
+            let at = |axis: usize, k: usize| {
+                paths.get(k * n + i).map_or(0.0, |path| (path[step][axis] - present[i][axis]) as f32)
             };
             [0, 1].map(|axis| Lanes(from_fn(|lane| at(axis, first + lane))))
         };
@@ -114,7 +114,8 @@ impl CrowdAtRisk {
                 (parts[i], shares[i]) = (p, part.shares(row, count));
             }
         }
-        Ok(Self { n, paths, scales, lanes, present, rings, origin, deviations, parts, shares })
+        let outermost = deviations.iter().map(|(_, blocks)| blocks.outermost()).fold(0.0, f32::max);
+        Ok(Self { n, paths, scales, lanes, present, rings, origin, deviations, outermost, parts, shares })
     }
 
     /// These pedestrians, in ascending order, by the part that they belong to.
@@ -180,15 +181,16 @@ impl Kernel for &mut CrowdSearch<'_> {
         let Some(near) = near(&crowd.rings[i], rings) else { return };
         let count = self.shares.len();
         let chunks = count.div_ceil(LANES);
-        let outermost = crowd.deviations.iter().map(|(_, blocks)| blocks.outermost()).fold(0.0, f32::max);
         // Of each hypothesis the deviations that come close during each step, then those that are at the moment itself.
         let mut close = vec![[0_u64; HORIZON + 1]; count];
         for (l, leg) in legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
             let course = PedestrianCourse::new(leg, crowd.present[i], &crowd.scales[i], within + leg.radius);
             for chunk in 0..chunks {
+                // The last lanes may be without a hypothesis.
+                let hypotheses = (1 << LANES.min(count - chunk * LANES)) - 1;
                 let at = |step: usize| &crowd.lanes[(i * (HORIZON + 1) + step) * chunks + chunk];
                 let ways = course.ways(simd, at(leg.step), at(leg.step + 1));
-                let mut lanes = ways.within(simd, outermost);
+                let mut lanes = ways.within(simd, crowd.outermost) & hypotheses;
                 while lanes > 0 {
                     let lane = lanes.trailing_zeros() as usize;
                     lanes &= lanes - 1;

@@ -40,28 +40,47 @@ pub(super) fn responses(futures: &Futures, ego: Option<usize>) -> Vec<Response> 
     responses
 }
 
+/// What of a plan people respond to.
+#[derive(Debug)]
+pub(super) struct SeenPlan {
+    /// The distance (m) between centres that counts as close.
+    within: f64,
+    /// Where it begins, metres.
+    start: Position,
+    /// How far it leads in 4.8 s, metres.
+    displacement: Position,
+}
+
+impl SeenPlan {
+    /// Of a plan whose edge is close within a distance (m).
+    pub(super) fn new(plan: &Plan, within: f64) -> Self {
+        let [start, end] = [0.0, TIME_STEP * HORIZON as f64].map(|time| plan.at(time).position);
+        let displacement = [0, 1].map(|axis| end[axis] - start[axis]);
+        Self { within: within + plan.largest_radius(), start, displacement }
+    }
+}
+
 impl Response {
-    /// To a plan whose edge is close within a distance (m), of pedestrian `i`.
-    pub(super) fn to(self, plan: &Plan, within: f64, futures: &Futures, i: usize) -> PlanResponse {
-        let within = within + plan.largest_radius();
-        let start = plan.at(0.0).position;
+    /// Of pedestrian `i` to a plan.
+    pub(super) fn to(self, plan: &SeenPlan, futures: &Futures, i: usize) -> PlanResponse {
+        let energy = Energy::learned();
         let (factors, logarithm) = match self {
             Self::None => (Vec::new(), 0.0),
             Self::Stranger { crowding } => {
-                let present = distance(start, futures.present(i));
-                (Vec::new(), Energy::learned().avoidance_of_stranger(within, present, crowding))
+                let present = distance(plan.start, futures.present(i));
+                (Vec::new(), energy.avoidance_of_stranger(plan.within, present, crowding))
             }
             Self::Companion { strength, kept } => {
-                let end = plan.at(TIME_STEP * HORIZON as f64).position;
-                let factor = |k: usize| {
-                    let path = futures.hypotheses().hypothesis(i, k);
-                    let moved = |axis: usize| path[HORIZON - 1][axis] - futures.start(i, k)[axis];
-                    let apart: Position = [0, 1].map(|axis| moved(axis) - (end[axis] - start[axis]));
-                    let squared = (apart[0] * apart[0] + apart[1] * apart[1]) as f32;
-                    f64::from(-Energy::learned().apart(strength, squared)).exp()
+                let apart = |k: usize| {
+                    let end = futures.hypotheses().hypothesis(i, k)[HORIZON - 1];
+                    let off = |axis: usize| end[axis] - futures.start(i, k)[axis] - plan.displacement[axis];
+                    energy.apart(strength, (off(0) * off(0) + off(1) * off(1)) as f32)
                 };
-                let factors = (0..futures.hypotheses().hypotheses()).map(factor).collect();
-                (factors, Energy::learned().avoidance_of_companion(within, kept))
+                let energies: Vec<f32> = (0..futures.hypotheses().hypotheses()).map(apart).collect();
+                // Relative to the likeliest, so that the product over many companions is a number above 0.
+                let least = energies.iter().copied().fold(f32::INFINITY, f32::min);
+                let factors = energies.into_iter().map(|energy| f64::from(least - energy).exp());
+                (factors.collect(), energy.avoidance_of_companion(plan.within, kept))
             }
         };
         PlanResponse { factors, odds: (-logarithm).exp() }

@@ -118,6 +118,9 @@ fn companions_go_on_as_the_plan_does() {
         let forecast = Forecast::new(2, 2, positions, vec![0.5; 4], None).unwrap().with_spread(spread).unwrap();
         Futures::new(&window(other), forecast, None).unwrap()
     };
+    let there = plan(&[[0.0; 4], [4.8, 0.0, 1e7, 0.0]]);
+    let risk = of_both(0.8).risks_if_seen(&[there], 0.5, Some(0)).unwrap().remove(0);
+    assert!((0.0..=1.0).contains(&risk.total), "{risk:?}");
     // The plan goes on, or stops after 1 m.
     for (rows, stops) in
         [([[0.0, 0.0, 0.0, 0.0], [4.8, 0.0, 5.76, 0.0]], false), ([[0.0; 4], [1.0, 0.0, 1.0, 0.0]], true)]
@@ -138,6 +141,9 @@ fn what_cannot_be_asked_is_refused() {
     for within in [-0.1, f64::NAN, f64::INFINITY] {
         let refused = futures.risks(&[], within, None).unwrap_err().to_string();
         assert!(refused.starts_with("the distance that counts as close is "), "{refused}");
+    }
+    for within in [1e9, 1e19, 1e38, 1e300] {
+        assert_eq!(one(&futures, &plan(&[[0.0; 4]]), within).total.to_bits(), 1.0_f64.to_bits(), "{within}");
     }
     let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![vec![[0.0; 2]; 8]]).unwrap();
     let bare = Forecast::with_equal_weights(1, 1, vec![[0.0; 2]; 12]).unwrap();
