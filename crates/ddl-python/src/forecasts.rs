@@ -191,8 +191,7 @@ pub(crate) fn region_radii<'py>(
     let rows = weights.as_array();
     let forecast_rows: Vec<usize> = (0..n).filter(|&i| !rows[[i, 0]].is_nan()).collect();
     let invalid = |text: String| pyo3::exceptions::PyValueError::new_err(text);
-    let of_name = [Holding::Step, Holding::Path, Holding::Scene].into_iter().find(|holding| holding.name() == of);
-    let holding = of_name.ok_or_else(|| invalid(format!("of must be step, path or scene; found {of}")))?;
+    let holding = Holding::named(of).ok_or_else(|| invalid(format!("of must be step, path or scene; found {of}")))?;
     let table = table.holding(holding, forecast_rows.len());
     let table = table.ok_or_else(|| invalid(format!("the forecast is of a version without regions of a {of}")))?;
     let mut radii = vec![f64::NAN; n * k * HORIZON];

@@ -132,9 +132,8 @@ impl Energy {
         self.together.distances[2]
     }
 
-    /// How strongly two observed tracks (8 positions, metres) belong together; 0 for strangers.
-    pub(crate) fn strength(&self, a: &[Position], b: &[Position]) -> f32 {
-        let [apart, velocities] = closeness(a, b);
+    /// How strongly two tracks of this [`closeness`] belong together; 0 for strangers.
+    pub(crate) fn strength(&self, [apart, velocities]: [f64; 2]) -> f32 {
         let bin = |limits: &[f64; 3], value: f64| limits.iter().position(|limit| value < *limit);
         match (bin(&self.together.distances, apart), bin(&self.together.velocities, velocities)) {
             (Some(distance), Some(velocity)) => self.together.strengths[distance][velocity],

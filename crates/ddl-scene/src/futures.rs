@@ -3,7 +3,7 @@
 use crate::error::SceneError;
 use crate::groups::Company;
 use crate::mixture::JointScene;
-use crate::parts::ScenePart;
+use crate::parts::{ScenePart, SceneParts};
 use crate::plan::Plan;
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, TIME_STEP, Window, between};
 use serde::{Deserialize, Serialize};
@@ -48,6 +48,7 @@ impl Futures {
         let weights = (0..forecast.hypotheses()).map(|k| forecast.weight(0, k)).collect();
         let pedestrians = (0..forecast.pedestrians()).collect();
         let parts = vec![ScenePart::together(pedestrians, weights)];
+        let parts = SceneParts { parts, company: Company::of(window) };
         Self::drawn(window, parts, (None, Vec::new()), forecast, plan)
     }
 
@@ -61,7 +62,7 @@ impl Futures {
     /// When there is another number of starts than of hypotheses.
     pub fn of_parts(
         window: &Window,
-        parts: Vec<ScenePart>,
+        parts: SceneParts,
         hypotheses: Forecast,
         starts: Vec<Position>,
         forecast: Forecast,
@@ -73,7 +74,7 @@ impl Futures {
 
     fn drawn(
         window: &Window,
-        parts: Vec<ScenePart>,
+        SceneParts { parts, company }: SceneParts,
         (hypotheses, starts): (Option<Forecast>, Vec<Position>),
         forecast: Forecast,
         plan: Option<Plan>,
@@ -93,17 +94,7 @@ impl Futures {
         let of_other = |i: usize| window.other(i).map_or(0.0, |other| other.quality.deviation);
         let deviations = (0..window.len()).map(|i| window.own_quality(i).deviation.max(of_other(i))).collect();
         let are_known = (0..window.len()).map(|i| !window.quality(i).is_hardly_observed()).collect();
-        Ok(Self {
-            present,
-            deviations,
-            are_known,
-            company: Company::of(window),
-            parts,
-            hypotheses,
-            starts,
-            forecast,
-            plan,
-        })
+        Ok(Self { present, deviations, are_known, company, parts, hypotheses, starts, forecast, plan })
     }
 
     /// [Groups](crate::groups) of pedestrians who walk together, as indices.

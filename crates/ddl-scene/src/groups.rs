@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 const CLOSE: f64 = 2.2;
 /// Difference of their mean velocities below which they do, m/s.
 const ALIKE: f64 = 0.35;
-/// Whoever comes nearer to another over the observation lets others come near, metres.
+/// Whoever was nearer to another during the observation lets others come near, metres.
 const LET_NEAR: f64 = 0.6;
 /// Who is around somebody, metres.
 const AROUND: f64 = 5.0;
@@ -27,13 +27,13 @@ pub(crate) struct Tie {
     pub(crate) kept: f64,
 }
 
-/// What the observation tells of people who are near each other.
+/// What the observation tells of people who are near each other: who walks together, and how closely they pass.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Company {
     /// Groups of pedestrians who walk together, as [`groups`].
     pub(crate) groups: Vec<Vec<usize>>,
     pub(crate) ties: Vec<Tie>,
-    /// `[N]`: the share of those around each who let others come near.
+    /// `[N]`: the share of the people around each who came within 0.6 m of another during the observation.
     pub(crate) crowding: Vec<f64>,
 }
 
@@ -44,24 +44,26 @@ impl Company {
         let index = SpatialIndex::new(&present);
         let mut links: Vec<usize> = (0..window.len()).collect();
         let (mut kept, mut partners) = (vec![f64::INFINITY; window.len()], vec![0.0_f32; window.len()]);
-        let near = |i: usize| index.nearest_others(i, present[i], MOST_NEIGHBOURS).into_iter();
+        let is_known = |i: &usize| !window.quality(*i).is_hardly_observed();
+        let near_of = |i: usize| {
+            let near = index.nearest_others(i, present[i], MOST_NEIGHBOURS).into_iter();
+            near.filter(|j| is_known(&i) && is_known(j)).collect()
+        };
+        let near: Vec<Vec<usize>> = (0..window.len()).map(near_of).collect();
         let pairs: BTreeSet<[usize; 2]> =
-            (0..window.len()).flat_map(|i| near(i).map(move |j| [i.min(j), i.max(j)])).collect();
+            near.iter().enumerate().flat_map(|(i, near)| near.iter().map(move |&j| [i.min(j), i.max(j)])).collect();
         let mut ties = Vec::new();
         for [i, j] in pairs {
-            if [i, j].iter().any(|&one| window.quality(one).is_hardly_observed()) {
-                continue;
-            }
             let [a, b] = [i, j].map(|one| window.observed(one));
             let least = least_distance(a, b);
             for one in [i, j] {
                 kept[one] = kept[one].min(least);
             }
-            let [apart, velocities] = closeness(a, b);
-            if apart < CLOSE && velocities < ALIKE {
+            let closeness = closeness(a, b);
+            if closeness[0] < CLOSE && closeness[1] < ALIKE {
                 link(&mut links, i, j);
             }
-            let strength = energy.strength(a, b);
+            let strength = energy.strength(closeness);
             if strength > 0.0 {
                 partners[i] += 1.0;
                 partners[j] += 1.0;
@@ -74,17 +76,16 @@ impl Company {
         }
         let groups = linked(&mut links).into_values().filter(|members| members.len() > 1).collect();
         let crowding = |i: usize| {
-            let around = near(i).filter(|&j| distance(present[i], present[j]) < AROUND).chain([i]);
-            let (count, some) = around
-                .fold((0.0, 0.0), |(count, some), one| (count + 1.0, some + f64::from(u8::from(kept[one] < LET_NEAR))));
+            let around = near[i].iter().copied().filter(|&j| distance(present[i], present[j]) < AROUND).chain([i]);
+            let some = around.clone().filter(|&one| kept[one] < LET_NEAR).count() as f64;
             // As if two more were there, of whom a fourth does.
-            (some + 0.5) / (count + 2.0)
+            (some + 0.5) / (around.count() as f64 + 2.0)
         };
         let crowding = (0..window.len()).map(crowding).collect();
         Self { groups, ties, crowding }
     }
 
-    /// Of some of the pedestrians, `[N]` of them, who have these places among them.
+    /// Of these pedestrians, each of whom has this new index; the others have none.
     pub(crate) fn of_pedestrians(&self, pedestrians: &[usize], place: impl Fn(&usize) -> Option<usize>) -> Self {
         let groups = self.groups.iter().map(|group| group.iter().filter_map(&place).collect::<Vec<usize>>());
         let tie = |tie: &Tie| {

@@ -22,6 +22,6 @@ pub use futures::Futures;
 pub use groups::groups;
 pub use mixture::{JointMixture, JointScene};
 pub use occupancy::{Area, Occupancy};
-pub use parts::ScenePart;
+pub use parts::{ScenePart, SceneParts};
 pub use plan::{Plan, PlanDoubt, PlanPoint};
 pub use risk::{Clearance, Risk};

@@ -5,7 +5,7 @@ use crate::groups::{Company, link, linked};
 use crate::hypotheses::Hypotheses;
 use crate::keeping_apart::keep_apart;
 use crate::pairs::{ObservedWalk, Pair, pairs_of};
-use crate::parts::ScenePart;
+use crate::parts::{ScenePart, SceneParts};
 use crate::plan::Plan;
 use crate::{quantisation, sampling};
 use ddl_core::{FRAME_LIMIT, Forecast, HORIZON, PedestrianName, Spread, TIME_STEP, Window};
@@ -91,6 +91,7 @@ pub struct JointScene<'a> {
     order: Vec<usize>,
     /// Pedestrians who may influence each other.
     parts: Vec<Vec<usize>>,
+    company: Company,
     /// The hypothesis of each pedestrian in each sample, `[N][S]`; those of one part have nothing to do with those of
     /// another.
     chosen: Vec<Vec<u8>>,
@@ -112,8 +113,8 @@ impl<'a> JointScene<'a> {
         let mut order: Vec<usize> = (0..window.len()).collect();
         order.sort_by(|&i, &j| all[i].compare(&all[j]).then_with(|| name(window, i).cmp(&name(window, j))));
         let mut people: Vec<Hypotheses> = order.iter().map(|&i| all[i].clone()).collect();
-        let crowding = Company::of(window).crowding;
-        let walk = |&i: &usize| ObservedWalk { track: window.observed(i), crowding: crowding[i] };
+        let company = Company::of(window);
+        let walk = |&i: &usize| ObservedWalk { track: window.observed(i), crowding: company.crowding[i] };
         let known = |i: &usize| (!window.quality(*i).is_hardly_observed()).then(|| walk(i));
         let mut walks: Vec<Option<ObservedWalk<'_>>> = order.iter().map(known).collect();
         if let Some(plan) = plan {
@@ -133,17 +134,17 @@ impl<'a> JointScene<'a> {
             ranks[i] = rank as u64;
         }
         let chosen = sampling::samples(&people, &pairs, &ranks, SAMPLES);
-        Self { forecast, people, pairs, order, parts, chosen }
+        Self { forecast, people, pairs, order, parts, company, chosen }
     }
 
     /// The parts of the scene, with the pedestrians as the window counts them.
-    pub fn parts(&self) -> Vec<ScenePart> {
+    pub fn parts(&self) -> SceneParts {
         let in_window = self.parts.iter().filter(|part| part[0] < self.order.len());
         let is_certain = |i: usize| self.people[i].count() == 1;
         let given: Vec<&Pair> = self.pairs.iter().filter(|p| is_certain(p.first) || is_certain(p.second)).collect();
         let mut parts: Vec<ScenePart> = in_window.map(|part| self.part(part, &given)).collect();
         parts.sort_unstable_by_key(|part| part.pedestrians[0]);
-        parts
+        SceneParts { parts, company: self.company.clone() }
     }
 
     fn part(&self, members: &[usize], given: &[&Pair]) -> ScenePart {

@@ -1,6 +1,6 @@
 //! The pairs of pedestrians that may meet or walk together, with a table of factors for each.
 
-use crate::energy::{Energy, PairEnergy};
+use crate::energy::{Energy, PairEnergy, closeness};
 use crate::groups::least_distance;
 use crate::hypotheses::Hypotheses;
 use ddl_core::{HORIZON, Position, SpatialIndex, distance};
@@ -42,7 +42,7 @@ pub(crate) struct ObservedWalk<'a> {
 pub(crate) fn pairs_of(energy: &Energy, people: &[Hypotheses], walks: &[Option<ObservedWalk<'_>>]) -> Vec<Pair> {
     let near = near_pairs(energy, people);
     let strength = |&(i, j): &(usize, usize)| match (walks[i], walks[j]) {
-        (Some(a), Some(b)) => energy.strength(a.track, b.track),
+        (Some(a), Some(b)) => energy.strength(closeness(a.track, b.track)),
         _ => 0.0,
     };
     let strengths: Vec<f32> = near.iter().map(strength).collect();

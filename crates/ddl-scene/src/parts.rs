@@ -6,6 +6,7 @@
 
 #![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
 
+use crate::groups::Company;
 use ddl_simd::{Dispatch, Kernel, Simd};
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,13 @@ pub struct ScenePart {
     pub(crate) weights: Vec<f64>,
     /// `[n][S]`: the hypothesis of each of the n pedestrians in each sample.
     pub(crate) chosen: Vec<Vec<u8>>,
+}
+
+/// The parts of a scene, and what the observation tells of its pedestrians.
+#[derive(Debug, Clone)]
+pub struct SceneParts {
+    pub(crate) parts: Vec<ScenePart>,
+    pub(crate) company: Company,
 }
 
 /// A pedestrian of a part that may do something.

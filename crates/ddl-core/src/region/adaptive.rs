@@ -203,27 +203,27 @@ impl Pending {
         (!scores.is_empty()).then_some(Outcomes { step, table, scores })
     }
 
-    /// What regions of whole paths and of everybody missed, once the forecast has ended. A path is judged if its
-    /// pedestrian was seen at all steps; the moment for all who were seen, as long as they were. `None` if nobody was,
-    /// and for tables without such regions.
+    /// Once the forecast has ended: which regions of whole paths, and of the whole scene, were left. Paths count of
+    /// pedestrians who were observed at all 12 steps. The scene counts every observed position of every pedestrian.
+    /// `None` if there are none, or the table has no such regions.
     fn moment(&self) -> Option<Moment> {
         let table = self.forecast.regions()?;
         let [path, scene] =
             [Holding::Path, Holding::Scene].map(|holding| table.holding(holding, self.forecast.pedestrians()));
         let (path, scene) = (path?, scene?);
-        let mut everybody = vec![false; table.0.levels.len()];
+        let mut scene_missed = vec![false; table.0.levels.len()];
         let mut paths = Vec::new();
         for (i, scores) in self.scores.iter().enumerate().filter(|(_, scores)| scores.iter().any(|s| !s.is_nan())) {
             let pace = self.forecast.pace(i)?;
-            for (all, one) in everybody.iter_mut().zip(missed(&scene, pace, scores)) {
-                *all |= one;
+            for (any, one) in scene_missed.iter_mut().zip(missed(&scene, pace, scores)) {
+                *any |= one;
             }
             if scores.iter().all(|score| !score.is_nan()) {
                 paths.push((pace, missed(&path, pace, scores).collect()));
             }
         }
         let anybody = self.scores.as_flattened().iter().any(|score| !score.is_nan());
-        anybody.then_some(Moment { share: self.share, paths, everybody })
+        anybody.then_some(Moment { share: self.share, paths, scene_missed })
     }
 
     /// The paces and gradients of the pedestrians that were seen at the end of the forecast.
@@ -275,7 +275,7 @@ mod tests {
         let regions: Arc<RegionTable> = RegionTable(LevelQuantiles { wholes: Some(wholes), ..table.0 }).into();
         let at = |frame: i64| {
             let n = if frame > 5 { 1 } else { 2 };
-            // Both are outside in the third frame, so whoever is judged was missed.
+            // In the third frame both are outside of all regions, so every path and scene that counts was left.
             let place = |frame: i64| if frame == 3 { [1.0, 7.0] } else { [1.0, 2.0] };
             let track: Vec<Position> = (frame - 7..=frame).map(place).collect();
             let ids = [1, 2].map(PedestrianId)[..n].to_vec();

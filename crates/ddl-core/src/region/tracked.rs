@@ -15,8 +15,8 @@
 //!
 //! Whole paths and scenes (`whole.rs`) follow the same rule once a forecast has ended, with `share` the time from the
 //! forecast before it: paths of each pace, and moments with one shift for all, `n = 1` and the step [`SCENE_STEP`].
-//! `missed` is then the share of the paths that left their region, of those seen throughout; and 1 or 0 for a moment,
-//! whether anybody did as long as he was seen.
+//! `missed` of paths is the share that left their region, among pedestrians observed at all 12 steps. `missed` of a
+//! moment is 1 if any observed position of a pedestrian is outside the region of the scene, else 0.
 //!
 //! As long as no shift reaches its bound, it is the sum of these moves. So from then on, the mean of `missed` of each
 //! pace, weighted by `w`, differs from `1 - a` by at most `2 LARGEST_SHIFT / (STEP sum w)`, for any motion of the
@@ -78,14 +78,15 @@ pub(super) struct Outcomes {
     pub(super) scores: Vec<(Pace, f64)>,
 }
 
-/// What the regions of a forecast that has ended missed, for each level.
+/// For each level, which regions of a forecast that has ended were left by their pedestrians.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Moment {
     /// The time since the moment before, in steps, at most 1.
     pub(super) share: f64,
-    /// Those of whole paths, one for each pedestrian.
+    /// Of whole paths, one for each pedestrian.
     pub(super) paths: Vec<(Pace, Vec<bool>)>,
-    pub(super) everybody: Vec<bool>,
+    /// Whether a pedestrian left the region of the scene.
+    pub(super) scene_missed: Vec<bool>,
 }
 
 impl Shifts {
@@ -142,15 +143,15 @@ impl TrackedQuantiles {
     pub(super) fn learn_wholes(&mut self, moments: impl Iterator<Item = Moment>) {
         let levels = self.start.0.levels.clone();
         let mut is_new = false;
-        for Moment { share, paths, everybody } in moments {
+        for Moment { share, paths, scene_missed } in moments {
             let of_paces = Pace::ALL.map(|pace| {
                 let own = || paths.iter().filter(|(of, _)| *of == pace);
                 let (count, missed) = (own().count(), |level| own().filter(|(_, missed)| missed[level]).count());
                 moves(&levels, STEP, weight_of(count, share), |level| missed(level) as f64 / count.max(1) as f64)
             });
             self.paths.learn(&of_paces);
-            let of_everybody = |level| f64::from(u8::from(everybody[level]));
-            self.scenes.learn(&[moves(&levels, SCENE_STEP, weight_of(1, share), of_everybody)]);
+            let of_scene = |level| f64::from(u8::from(scene_missed[level]));
+            self.scenes.learn(&[moves(&levels, SCENE_STEP, weight_of(1, share), of_scene)]);
             is_new = true;
         }
         if is_new {
@@ -288,8 +289,8 @@ mod tests {
             (1.0, crowd, both),
             (0.25, of(Pace::Slow, &[none, low]), none),
         ];
-        for ((share, paths, everybody), expected) in moments.into_iter().zip(expected) {
-            tracked.learn_wholes([Moment { share, paths, everybody: everybody.to_vec() }].into_iter());
+        for ((share, paths, scene_missed), expected) in moments.into_iter().zip(expected) {
+            tracked.learn_wholes([Moment { share, paths, scene_missed: scene_missed.to_vec() }].into_iter());
             let [path, scene] = [Holding::Path, Holding::Scene].map(|of| tracked.table().holding(of, 4).unwrap());
             let cells = [(&path, Pace::Walking, 0.5), (&path, Pace::Walking, 0.9), (&path, Pace::Slow, 0.9)];
             let scenes = [(&scene, Pace::Walking, 0.5), (&scene, Pace::Walking, 0.9)];
@@ -380,7 +381,7 @@ mod tests {
                     (Pace::ALL[pace], missed(Holding::Path, Pace::ALL[pace], coin, 20.0))
                 };
                 let paths: Vec<(Pace, Vec<bool>)> = judged.iter().map(path).collect();
-                let everybody = missed(Holding::Scene, Pace::Slow, *coin, 40.0);
+                let scene_missed = missed(Holding::Scene, Pace::Slow, *coin, 40.0);
                 for pace in 0..3 {
                     let own = || paths.iter().filter(|(of, _)| *of as usize == pace);
                     let weight = share * (own().count() as f64).sqrt().min(3.0);
@@ -391,9 +392,9 @@ mod tests {
                     learned[pace] += weight;
                 }
                 for (row, error) in of_scenes.iter_mut().enumerate() {
-                    *error += share * (f64::from(u8::from(everybody[row])) - (1.0 - levels[row]));
+                    *error += share * (f64::from(u8::from(scene_missed[row])) - (1.0 - levels[row]));
                 }
-                tracked.learn_wholes([Moment { share: *share, paths, everybody }].into_iter());
+                tracked.learn_wholes([Moment { share: *share, paths, scene_missed }].into_iter());
                 issued.push_back(Arc::clone(tracked.table()));
             }
             let is_near = |error: &f64, step: f64| error.abs() <= 2.0 * LARGEST_SHIFT / step + 1e-9;

@@ -1,4 +1,4 @@
-//! Regions of whole paths, and of everybody at once.
+//! Regions that hold a whole path, or all pedestrians of a scene on their whole paths.
 //!
 //! The discs of a path are larger than those of single steps, all by one factor, and those of a scene larger again.
 //! With the quantiles `q_t(a)` of steps (see `region.rs`), the region of the level `a` has
@@ -42,6 +42,14 @@ pub enum Holding {
 }
 
 impl Holding {
+    /// All, the least first.
+    pub const ALL: [Self; 3] = [Self::Step, Self::Path, Self::Scene];
+
+    /// The one of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|holding| holding.name() == name)
+    }
+
     /// `step`, `path` or `scene`.
     pub fn name(self) -> &'static str {
         match self {

@@ -62,7 +62,7 @@ fn strengths_by_hand() {
             std::array::from_fn(|t| [vx * time(t) - 0.8 * side, vy * time(t) + 0.6 * side])
         };
         let other = walk(apart, [0.3 + 0.6 * faster, -1.1 + 0.8 * faster]);
-        energy().strength(&walk(0.0, [0.3, -1.1]), &other)
+        energy().strength(closeness(&walk(0.0, [0.3, -1.1]), &other))
     };
     let distances = [0.8, 1.8, 3.7].map(|apart| [0.05, 0.25, 0.5].map(|faster| strength(apart, faster)));
     assert_eq!(distances, [[0.9, 0.8, 0.7], [0.6, 0.5, 0.4], [0.3, 0.2, 0.1]]);
@@ -72,7 +72,7 @@ fn strengths_by_hand() {
     for (last, expected) in [(0.0, 0.7), (0.6, 0.4)] {
         let line = |[x, y]: Position, step: f64| (0..8).map(|t| [x, y + step * f64::from(t)]).collect::<Vec<_>>();
         let (still, nearing) = (line([0.0; 2], 0.0), line([0.2, last + 1.4], -0.2));
-        assert_eq!(energy().strength(&still, &nearing), expected);
+        assert_eq!(energy().strength(closeness(&still, &nearing)), expected);
     }
 }
 

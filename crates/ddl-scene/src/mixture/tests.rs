@@ -33,6 +33,24 @@ fn futures_are_in_the_order_of_their_sizes() {
     assert_eq!((labels, sizes), (vec![0, 2, 0, 1, 0, 1], vec![3, 2, 1, 0]));
 }
 
+/// By hand: of six who stand 0.5 m apart all let others come near, 6.5 of 8. Of two of whom one has gone 1.7 m from the
+/// other, 0.3 m away, 2.5 of 4 do: (0.625 - 0.25) / 0.5 of the way from 0.4 to 0.22 m. Of two 3 m apart 0.5 of 4.
+#[test]
+fn people_pass_as_closely_as_they_did() {
+    let row = |i: usize| format!("{} 0 0 0  0.5 0 0  0.5 0.3 0", 0.5 * i as f64);
+    let gone = format!("2 0 {} 0  0.5 0 0  0.5 -0.4 0", 1.7 / 2.8);
+    let still = "0 0 0 0  0.5 0 0  0.5 0.3 0".to_owned();
+    let far = "3 0 0 0  0.5 0 0  0.5 -0.4 0".to_owned();
+    for (people, count, expected) in
+        [((0..6).map(row).collect(), 15, 0.22), (vec![still.clone(), gone], 1, 0.265), (vec![still, far], 1, 0.4)]
+    {
+        let (window, forecast) = scene(&pedestrians(&people.join("\n")));
+        let scene = JointScene::of(&window, &forecast, None, None);
+        let near: Vec<f32> = scene.pairs.iter().map(|pair| pair.energy.near).collect();
+        assert!(near.len() == count && near.iter().all(|near| (near - expected).abs() < 1e-6), "{near:?} {expected}");
+    }
+}
+
 /// A plan that crosses the way of the first hypothesis 2 s after the moment, 2 m ahead, and nothing else.
 #[test]
 fn a_plan_is_avoided_where_it_is_at_that_time() {

@@ -9,7 +9,7 @@ use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError, HORIZON, OBSERVED, PedestrianName, Position, Spread, TIME_STEP, Window};
-use ddl_scene::{Futures, JointMixture, JointScene, Plan, SceneError, ScenePart};
+use ddl_scene::{Futures, JointMixture, JointScene, Plan, SceneError, SceneParts};
 
 /// A plan that the pedestrians of a scene respond to.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +23,7 @@ pub struct GivenPlan {
 /// Joint futures instead of hypotheses, with what they were drawn from.
 struct JointWalks<'a> {
     walked: Walked<'a>,
-    parts: Vec<ScenePart>,
+    parts: SceneParts,
     hypotheses: Forecast,
     /// `[N][K]`: where the hypotheses begin (m); or empty.
     starts: Vec<Position>,

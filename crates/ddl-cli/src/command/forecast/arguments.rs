@@ -5,7 +5,8 @@ use crate::command::forecast::plans::GivenPlanOptions;
 use crate::command::forecast::state::StreamState;
 use crate::command::forecast::stream::{AnsweringCommand, OutputFormat, StreamOptions};
 use anyhow::bail;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use ddl::{Holding, Moment, Request, WantedRegions, csv_table, json_lines};
 use ddl_mcap::ForecastLog;
 use std::fs::File;
@@ -62,16 +63,8 @@ pub(crate) struct ForecastCommand {
     /// pedestrians of the moment on their whole paths
     ///
     /// csv names the columns `path_radius_0.9` and `scene_radius_0.9`, jsonl adds `holds` to the region.
-    #[arg(long, value_enum, default_value_t, requires = "region")]
-    region_holds: RegionHolds,
-}
-
-#[derive(Debug, Clone, Copy, Default, ValueEnum)]
-enum RegionHolds {
-    #[default]
-    Step,
-    Path,
-    Scene,
+    #[arg(long, value_name = "WHAT", default_value = "step", value_parser = holding(), requires = "region")]
+    region_holds: Holding,
 }
 
 impl ForecastCommand {
@@ -118,12 +111,7 @@ impl AnsweringCommand for ForecastCommand {
 
     fn text(&self, moments: &[Moment<'_>], state: &mut StreamState) -> anyhow::Result<String> {
         let headed = state.is_first_text();
-        let holding = match self.region_holds {
-            RegionHolds::Step => Holding::Step,
-            RegionHolds::Path => Holding::Path,
-            RegionHolds::Scene => Holding::Scene,
-        };
-        let regions = WantedRegions { levels: &self.region, holding };
+        let regions = WantedRegions { levels: &self.region, holding: self.region_holds };
         match self.stream.format(self.format) {
             OutputFormat::Csv => Ok(csv_table(moments, headed, regions)?),
             OutputFormat::Jsonl => Ok(json_lines(moments, regions)?),
@@ -138,4 +126,8 @@ fn probability(text: &str) -> anyhow::Result<f64> {
         return Ok(level);
     }
     bail!("the probability of a region must be from {low} to {high}")
+}
+
+fn holding() -> impl TypedValueParser<Value = Holding> {
+    PossibleValuesParser::new(Holding::ALL.map(Holding::name)).map(|name| Holding::named(&name).unwrap_or_default())
 }
