@@ -171,8 +171,7 @@ impl ShownAnswer {
             index.ok_or_else(|| CallFailure::invalid(format!("ego is {id}, but no such pedestrian is forecast")))
         };
         let ego = ego.map(index).transpose()?;
-        let names: Vec<String> = (0..plans.len()).map(|index| index.to_string()).collect();
-        let doubts = warning_of(&Note::of_plans(names.iter().map(String::as_str).zip(plans), futures, ego));
+        let doubts = warning_of(&Note::of_plans((0..).zip(plans), futures, ego));
         let risks = held.threads.run(|| {
             let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
             risks(futures, plans, within, ego).map_err(CallFailure::invalid)

@@ -9,6 +9,7 @@ use ddl::{Answer, Note};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::fmt;
 use std::sync::Arc;
 
 /// Joint futures of the pedestrians that were asked for; `None` if none of them can be forecast.
@@ -20,17 +21,23 @@ pub(crate) struct FuturesHandle {
     is_given: bool,
 }
 
-/// A plan of the rows t, x, y and radius.
+/// The plan of `(m, 4)` rows t, x, y and radius.
 pub(crate) fn plan(rows: &PyReadonlyArray2<'_, f64>) -> PyResult<Plan> {
+    Ok(plans_of(rows, &[rows.shape()[0]])?.remove(0))
+}
+
+/// From the rows of all plans, and the number of those of each.
+fn plans_of(rows: &PyReadonlyArray2<'_, f64>, lengths: &[usize]) -> PyResult<Vec<Plan>> {
     ensure!(
         rows.shape()[1] == 4,
         "a plan must have the shape (m, 3) or (m, 4): t in seconds after the moment, x, y and radius in \
              metres; found {:?}",
         rows.shape()
     );
-    let points = flat("plan", rows)?.as_chunks::<4>().0.iter();
+    let mut points = flat("plan", rows)?.as_chunks::<4>().0.iter();
     let point = |&[time, x, y, radius]: &[f64; 4]| PlanPoint { time, position: [x, y], radius };
-    Plan::new(points.map(point).collect()).map_err(of_any)
+    let of_each = lengths.iter().map(|&length| Plan::new(points.by_ref().take(length).map(point).collect()));
+    of_each.collect::<Result<_, _>>().map_err(of_any)
 }
 
 impl FuturesHandle {
@@ -48,18 +55,15 @@ impl FuturesHandle {
     }
 }
 
-fn plans_of(plans: &[PyReadonlyArray2<'_, f64>]) -> PyResult<Vec<Plan>> {
-    plans.iter().map(plan).collect()
-}
-
 #[pymethods]
 impl FuturesHandle {
-    /// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each
+    /// For p plans of these rows and lengths, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each
     /// step and until its end `(p, 12)`; and texts about doubtful plans.
     fn risks<'py>(
         &self,
         py: Python<'py>,
-        plans: Vec<PyReadonlyArray2<'py, f64>>,
+        rows: PyReadonlyArray2<'py, f64>,
+        lengths: Vec<usize>,
         within: f64,
         ego: Option<usize>,
         seen: bool,
@@ -68,15 +72,15 @@ impl FuturesHandle {
         if seen && self.is_given {
             return Err(of_any(SceneError::PlanGiven));
         }
-        let plans = plans_of(&plans)?;
+        let plans = plans_of(&rows, &lengths)?;
         let count = plans.len();
         let Some(futures) = self.futures.clone() else {
             let none = |width: usize| array(py, vec![0.0; count * width], [count, width]);
             let empty = [array(py, vec![0.0; count], [count])?, none(0)?, none(HORIZON)?, none(HORIZON)?];
             return Ok((empty, Vec::new()));
         };
-        let names: Vec<String> = (0..count).map(|index| format!("plans[{index}]")).collect();
-        let doubts = Note::of_plans(names.iter().map(String::as_str).zip(&plans), &futures, ego);
+        let names = (0..count).map(|index| fmt::from_fn(move |to| write!(to, "plans[{index}]")));
+        let doubts = Note::of_plans(names.zip(&plans), &futures, ego);
         let people = futures.pedestrians();
         let risks = if seen { Futures::risks_if_seen } else { Futures::risks };
         let risks = run(py, move |_| risks(&futures, &plans, within, ego))?.map_err(of_any)?;
@@ -91,8 +95,13 @@ impl FuturesHandle {
     }
 
     /// For p plans: the expected least distance `(p,)`, and that of each pedestrian `(p, n)`.
-    fn clearances<'py>(&self, py: Python<'py>, plans: Vec<PyReadonlyArray2<'py, f64>>) -> PyResult<[Py<PyAny>; 2]> {
-        let plans = plans_of(&plans)?;
+    fn clearances<'py>(
+        &self,
+        py: Python<'py>,
+        rows: PyReadonlyArray2<'py, f64>,
+        lengths: Vec<usize>,
+    ) -> PyResult<[Py<PyAny>; 2]> {
+        let plans = plans_of(&rows, &lengths)?;
         let count = plans.len();
         let Some(futures) = self.futures.clone() else {
             let no_pedestrians = array(py, Vec::<f64>::new(), [count, 0])?;

@@ -20,11 +20,7 @@ mod mass;
 #[cfg(test)]
 mod tests;
 
-use crate::{
-    error::SceneError,
-    futures::Futures,
-    parts::{PartMember, ScenePart},
-};
+use crate::{error::SceneError, futures::Futures, parts::ScenePart};
 use ddl_core::{HORIZON, Position, TIME_STEP};
 use mass::MassTable;
 use rayon::prelude::*;
@@ -246,11 +242,10 @@ fn free_of_part(area: &Area, row: usize, part: &ScenePart, bodies: &[OccupyingBo
         if !both.is_empty() {
             let place = area.centre([column, row]);
             let of = |body: &&OccupyingBody| {
-                let away = (0..body.places.len()).map(|h| (h, [1.0 - body.mass(h, place)]));
-                PartMember::new(body.pedestrian, away, Vec::new())
+                let away = (0..body.places.len()).map(|h| 1.0 - body.mass(h, place));
+                (body.pedestrian, away.collect())
             };
-            let [occupied] = part.somebody(&both.iter().map(of).collect::<Vec<_>>());
-            *free *= 1.0 - occupied;
+            *free *= 1.0 - part.somebody(&both.iter().map(of).collect::<Vec<_>>());
         }
     }
 }

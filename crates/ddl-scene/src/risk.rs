@@ -4,19 +4,18 @@
 //! distributed by Student's t ([`Spread`](ddl_core::Spread)), lasts for the whole future, grows with the scale `s_i(t)`
 //! and is independent of those of other pedestrians. At the moment itself the scale is the deviation of the last
 //! observed position, 0 for a row; between the steps and the rows of the plan everything moves on straight lines. With
-//! the share `P_ih` of deviations that come close, and the samples s of a part of the scene, of the weight `w_s`, in
-//! which i follows `h_is`,
+//! the share `P_ih` of deviations that come close, and the share `w_ih` of the samples of the scene in which i follows h,
 //!
 //! ```text
-//! P(somebody of the part) = sum_s w_s (1 - prod_i (1 - P_ih_is)),    P(pedestrian i) = sum_s w_s P_ih_is
-//! P(somebody)             = 1 - prod (1 - P(somebody of the part))
+//! P(pedestrian i) = sum_h w_ih P_ih,    P(somebody) = 1 - prod_i (1 - P(pedestrian i))
 //! ```
 //!
+//! as if people came close independently of each other: sums over the samples were no better calibrated, and slower.
 //! Pedestrians who see a plan respond to it (`response.rs`): the odds that each comes close are divided by a factor,
-//! and the hypotheses and samples of those who walk with the pedestrian on the plan get other weights.
+//! and the hypotheses of those who walk with the pedestrian on the plan get other weights.
 //!
-//! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
-//! results depend on nothing but their input. Less than 1/64 of one hypothesis may count as 0.
+//! Shares are those of 16 to 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
+//! results depend on nothing but their input. Less than 1/64 of a likely hypothesis, or 1/16 of another, may count as 0.
 
 mod course;
 mod crowd;
@@ -26,11 +25,10 @@ mod response;
 mod tests;
 mod way;
 
-use crate::{error::SceneError, futures::Futures, parts::PartMember, plan::Plan};
+use crate::{error::SceneError, futures::Futures, plan::Plan};
 use course::legs;
-use crowd::{Closeness, CrowdAtRisk, Hits, Sweep};
+use crowd::{CrowdAtRisk, Hits, Sweep};
 use ddl_core::HORIZON;
-use quadrature::DEVIATIONS;
 pub(crate) use quadrature::probability;
 use rayon::prelude::*;
 use response::{PlanResponse, Response, SeenPlan, responses};
@@ -130,26 +128,13 @@ impl Futures {
     ) -> Risk {
         let mut pedestrians = vec![0.0; self.pedestrians()];
         let mut somebody = [0.0; 2 * HORIZON];
-        let near = crowd.near(sweep).into_iter().filter(|&i| Some(i) != ego);
-        for (part, members) in crowd.by_part(near) {
-            let member = |i: usize| {
-                let PlanResponse { factors, odds } = respond(i);
-                let hits = crowd.hits(sweep, i, &reweighted(&crowd.shares[i], &factors))?;
-                let reduced = reduction(&hits, odds);
-                let steps = hits.steps.map(&reduced);
-                let away = hits.of_hypotheses.iter().map(|(k, steps)| (*k, steps.map(|hits| 1.0 - reduced(hits))));
-                Some((steps, PartMember::new(i, away, factors)))
-            };
-            let (steps, members): (Vec<StepProbabilities>, Vec<_>) = members.into_iter().filter_map(member).unzip();
-            for (one, steps) in members.iter().zip(&steps) {
-                pedestrians[one.pedestrian] = steps[2 * HORIZON - 1];
-            }
-            let of_part = match steps[..] {
-                [of_one] => of_one,
-                _ => self.parts()[part].somebody(&members),
-            };
-            for (sum, of_part) in somebody.iter_mut().zip(of_part) {
-                *sum += of_part - *sum * of_part;
+        for i in crowd.near(sweep).filter(|&i| Some(i) != ego) {
+            let PlanResponse { factors, odds } = respond(i);
+            let Some(hits) = crowd.hits(sweep, i, &reweighted(&crowd.shares[i], &factors)) else { continue };
+            let of_one = reduced(&hits, odds);
+            pedestrians[i] = of_one[2 * HORIZON - 1];
+            for (sum, of_one) in somebody.iter_mut().zip(of_one) {
+                *sum += of_one - *sum * of_one;
             }
         }
         // The weights sum to 1 up to rounding.
@@ -162,32 +147,23 @@ impl Futures {
 
     fn clearance(&self, crowd: &CrowdAtRisk, plan: &Plan) -> Clearance {
         let legs = legs(plan);
-        let distances: Vec<Vec<[f64; DEVIATIONS]>> = (0..self.pedestrians())
-            .map(|i| {
-                let of_each = (0..self.hypotheses().hypotheses()).map(|h| crowd.distances(&legs, i, h));
-                of_each.map(|distances| distances.map(|distance| distance.max(0.0))).collect()
-            })
-            .collect();
-        let mean = |distances: &[f64; DEVIATIONS]| distances.iter().sum::<f64>() / DEVIATIONS as f64;
+        let of_each = |i: usize| -> Vec<Vec<f64>> {
+            (0..self.hypotheses().hypotheses()).map(|k| crowd.distances(&legs, i, k)).collect()
+        };
+        // Of each pedestrian and hypothesis.
+        let mut distances: Vec<Vec<Vec<f64>>> = (0..self.pedestrians()).map(of_each).collect();
+        distances.iter_mut().flatten().flatten().for_each(|distance| *distance = distance.max(0.0));
+        let mean = |distances: &Vec<f64>| distances.iter().sum::<f64>() / distances.len() as f64;
         let expected = distances.iter().zip(&crowd.shares).map(|(distances, shares)| {
             distances.iter().zip(shares).map(|(distances, share)| share * mean(distances)).sum()
         });
         // Somebody is surely nearer than this.
-        let most = |distances: &Vec<[f64; DEVIATIONS]>| distances.as_flattened().iter().copied().fold(0.0, f64::max);
+        let most = |distances: &Vec<Vec<f64>>| distances.iter().flatten().copied().fold(0.0, f64::max);
         let width = (distances.iter().map(most).fold(f64::INFINITY, f64::min) / CELLS as f64).max(f64::MIN_POSITIVE);
         let mut farther = [1.0; CELLS];
-        let least = |i: usize| distances[i].as_flattened().iter().copied().fold(f64::INFINITY, f64::min);
-        let near = (0..self.pedestrians()).filter(|&i| least(i) < width * CELLS as f64);
-        for (part, members) in crowd.by_part(near) {
-            let farther_of = |i: usize| {
-                let of_each = distances[i].iter().map(|distances| farther_shares(distances, width)).enumerate();
-                PartMember::new(i, of_each, Vec::new())
-            };
-            let all: Vec<PartMember<CELLS>> = members.into_iter().map(farther_of).collect();
-            let nearer = self.parts()[part].somebody(&all);
-            for (farther, nearer) in farther.iter_mut().zip(nearer) {
-                *farther *= 1.0 - nearer;
-            }
+        for (distances, shares) in distances.iter().zip(&crowd.shares) {
+            let of_one = farther_shares(distances, shares, width);
+            farther.iter_mut().zip(of_one).for_each(|(farther, of_one)| *farther *= of_one);
         }
         Clearance { nearest: width * farther.iter().sum::<f64>(), pedestrians: expected.collect() }
     }
@@ -196,32 +172,35 @@ impl Futures {
 /// Cells of distance over which the least one is integrated.
 const CELLS: usize = 256;
 
-/// In each cell of this width (m), from 0 on, the mean share of distances that are larger.
-fn farther_shares(distances: &[f64; DEVIATIONS], width: f64) -> [f64; CELLS] {
-    let mut shares = [0.0; CELLS];
-    for distance in distances {
-        let end = distance / width;
-        for share in &mut shares[..(end as usize).min(CELLS)] {
-            *share += 1.0 / DEVIATIONS as f64;
-        }
-        if let Some(last) = shares.get_mut(end as usize) {
-            *last += end.fract() / DEVIATIONS as f64;
+/// In each cell of this width (m), from 0 on, the mean share of distances of a pedestrian that are larger.
+fn farther_shares(distances: &[Vec<f64>], shares: &[f64], width: f64) -> [f64; CELLS] {
+    // Of each cell what is less than in the one before.
+    let mut less = [0.0; CELLS + 2];
+    for (distances, share) in distances.iter().zip(shares) {
+        for distance in distances {
+            let (end, share) = (distance / width, share / distances.len() as f64);
+            let cell = (end as usize).min(CELLS);
+            less[cell] += (1.0 - end.fract()) * share;
+            less[cell + 1] += end.fract() * share;
         }
     }
-    shares
+    let mut farther = 1.0;
+    from_fn(|cell| {
+        farther -= less[cell];
+        farther
+    })
 }
 
 /// Probabilities during each step, then until its end.
 type StepProbabilities = [f64; 2 * HORIZON];
 
 /// What remains of probabilities if a pedestrian multiplies its odds to come close by a factor. Whoever is close at the
-/// moment itself cannot keep away; the probability of the others falls in proportion, by each step and on each
-/// hypothesis.
-fn reduction(hits: &Hits, odds: f64) -> impl Fn(Closeness) -> f64 {
-    let [close_now, close_later] = hits.steps[2 * HORIZON - 1];
+/// moment itself cannot keep away; the probability of the others falls in proportion, by each step.
+fn reduced(hits: &Hits, odds: f64) -> StepProbabilities {
+    let [close_now, close_later] = hits[2 * HORIZON - 1];
     let of_others = close_later / f64::max(1.0 - close_now, f64::MIN_POSITIVE);
     let reduction = odds / (1.0 - of_others + of_others * odds);
-    move |[now, later]| now + reduction * later
+    hits.map(|[now, later]| now + reduction * later)
 }
 
 /// Probabilities times factors, divided by their sum.

@@ -84,14 +84,14 @@ impl MisfitNote {
 impl Note {
     /// What is doubtful of plans in a scene, whose pedestrian `ego` follows them if there is one: of the doubts of each
     /// [kind](PlanDoubt::kind) that of the first plan.
-    pub fn of_plans<'a>(
-        plans: impl IntoIterator<Item = (&'a str, &'a Plan)>,
+    pub fn of_plans<'a, N: Display>(
+        plans: impl IntoIterator<Item = (N, &'a Plan)>,
         futures: &Futures,
         ego: Option<usize>,
     ) -> Vec<Self> {
         let doubts = plans
             .into_iter()
-            .flat_map(|(name, plan)| futures.doubts(plan, ego).into_iter().map(move |doubt| (name.to_owned(), doubt)));
+            .flat_map(|(name, plan)| futures.doubts(plan, ego).into_iter().map(move |doubt| (name.to_string(), doubt)));
         let mut kinds = BTreeSet::new();
         let first = doubts.filter(|(_, doubt)| kinds.insert(doubt.kind()));
         first.map(|(name, doubt)| Self::Plan { name, doubt }).collect()

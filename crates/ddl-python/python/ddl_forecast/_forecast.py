@@ -242,7 +242,7 @@ class Forecast:
             if found.size == 0:
                 raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
             row = int(found[0])
-        (total, people, steps, until), doubts = scene.risks(_plans(plans), within, row, seen)
+        (total, people, steps, until), doubts = scene.risks(*_plans(plans), within, row, seen)
         for doubt in doubts:
             warnings.warn(doubt, DoubtWarning, stacklevel=2)
         of_each = np.full((len(total), len(self)), np.nan)
@@ -255,7 +255,7 @@ class Forecast:
         Of people who do not see the plan, as in ``risk(seen=False)``.
         """
         rows = self.valid
-        nearest, people = self._scene().clearances(_plans(plans))
+        nearest, people = self._scene().clearances(*_plans(plans))
         of_each = np.full((len(nearest), len(self)), np.nan)
         of_each[:, rows] = people
         return nearest, of_each
@@ -353,11 +353,14 @@ class Forecast:
         )
 
 
-def _plans(plans: Sequence[ArrayLike] | Floats) -> list[Floats]:
-    """The rows of each plan; one plan alone needs a list around it."""
+def _plans(plans: Sequence[ArrayLike] | Floats) -> tuple[Floats, list[int]]:
+    """The rows of all plans, and the number of those of each; one plan alone needs a list around it."""
     if len(plans) > 0 and np.ndim(plans[0]) == 1:
         raise ValueError("plans must be a list of plans, each of the shape (m, 3) or (m, 4): put one plan into a list")
-    return [plan_rows(plan) for plan in plans]
+    if isinstance(plans, np.ndarray) and plans.ndim == 3:
+        return plan_rows(plans.reshape(plans.shape[0] * plans.shape[1], plans.shape[2])), [plans.shape[1]] * len(plans)
+    of_each = [plan_rows(plan) for plan in plans]
+    return np.concatenate([np.empty((0, 4)), *of_each]), [len(rows) for rows in of_each]
 
 
 def _ids(names: list[Any]) -> NDArray[Any]:

@@ -3,13 +3,12 @@
 #![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
 
 use super::course::{CourseLeg, legs};
-use super::quadrature::{DEVIATIONS, DeviationBlocks, Quadrature};
-use super::way::PedestrianCourse;
+use super::quadrature::{COUNTS, count_of, deviations_of_hypothesis};
+use super::way::{DeviationBlock, PedestrianCourse};
 use crate::{error::SceneError, futures::Futures, plan::Plan};
-use ddl_core::{HORIZON, Position, between, bounds};
+use ddl_core::{HORIZON, Position, between, bounds, distance};
 use ddl_simd::{Dispatch, Kernel, LANES, Lanes, Simd};
 use std::array::from_fn;
-use std::collections::BTreeMap;
 
 /// What `f32` may be wrong by, as a share of the size of a coordinate.
 const ROUNDING: f64 = 1e-6;
@@ -23,20 +22,40 @@ pub(super) struct CrowdAtRisk {
     /// `[N]`, metres.
     scales: Vec<[f64; HORIZON + 1]>,
     /// `[N][13][K / 16]`: x and y of the same paths, metres from the present position of the pedestrian.
-    lanes: Vec<[Lanes; 2]>,
+    places: Vec<[Lanes; 2]>,
     /// `[N]`, metres.
     present: Vec<Position>,
     /// `[N]`: around all deviations from all hypotheses.
     rings: Vec<Rings>,
     origin: Position,
-    /// `[K]`: the deviations from each hypothesis, exactly and in blocks.
-    deviations: Vec<(Quadrature, DeviationBlocks)>,
-    /// None of the deviations is longer, in scales.
-    outermost: f32,
-    /// `[N]`: the part of the scene that each pedestrian belongs to.
-    parts: Vec<usize>,
+    /// Of each number of deviations `[K]`: those from each hypothesis.
+    deviations: [Vec<Deviations>; COUNTS.len()],
+    /// `[N][K]`: which of them each has.
+    counts: Vec<Vec<usize>>,
+    /// `[N][K / 16]`: none of the deviations from a hypothesis is longer.
+    outermost: Vec<Lanes>,
     /// `[N][K]`: probabilities of the hypotheses.
     pub(super) shares: Vec<Vec<f64>>,
+}
+
+/// Deviations from a hypothesis, in scales.
+#[derive(Debug)]
+struct Deviations {
+    exact: Vec<Position>,
+    blocks: Vec<DeviationBlock>,
+}
+
+impl Deviations {
+    fn of_hypothesis(k: usize, count: usize) -> Self {
+        let exact = deviations_of_hypothesis(k, count);
+        let blocks = exact.as_chunks().0.iter().map(DeviationBlock::of).collect();
+        Self { exact, blocks }
+    }
+
+    /// None is longer.
+    fn outermost(&self) -> f32 {
+        self.blocks.last().map_or(0.0, |block| block.most)
+    }
 }
 
 /// Discs in which somebody stays during each step: x and y (m from the origin of the crowd), radius (m).
@@ -53,14 +72,8 @@ pub(super) struct Sweep {
 /// Probabilities that a pedestrian comes close: where it is close at the moment itself, and otherwise.
 pub(super) type Closeness = [f64; 2];
 
-/// How likely a pedestrian comes close to a plan.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Hits {
-    /// During each step, then until its end.
-    pub(super) steps: [Closeness; 2 * HORIZON],
-    /// The same on each hypothesis on which it comes close.
-    pub(super) of_hypotheses: Vec<(usize, [Closeness; 2 * HORIZON])>,
-}
+/// How likely a pedestrian comes close to a plan: during each step, then until its end.
+pub(super) type Hits = [Closeness; 2 * HORIZON];
 
 impl CrowdAtRisk {
     pub(super) fn new(futures: &Futures) -> Result<Self, SceneError> {
@@ -82,83 +95,73 @@ impl CrowdAtRisk {
         };
         let paths: Vec<_> = pairs().map(path).collect();
         let origin = futures.present(0);
-        let of_hypothesis = |k| {
-            let exact = Quadrature::of_hypothesis(k);
-            let blocks = DeviationBlocks::of(&exact);
-            (exact, blocks)
-        };
-        let deviations: Vec<_> = (0..count).map(of_hypothesis).collect();
-        let farthest = deviations.iter().map(|(exact, _)| exact.farthest()).fold(0.0, f64::max);
-        let of_step = |i: usize, step: usize| (0..count).map(move |k| (k * n + i, step));
-        let around = |i: usize| {
-            rings(origin, |step| {
-                let both = of_step(i, step).chain(of_step(i, step + 1));
-                let margin = farthest * scales[i][step].max(scales[i][step + 1]);
-                (both.map(|(pair, step)| paths[pair][step]), margin)
-            })
-        };
-        let rings = (0..n).map(around).collect();
-        let present: Vec<Position> = (0..n).map(|i| futures.present(i)).collect();
-        let lanes_of = |(i, step, first): (usize, usize, usize)| {
-            let at = |axis: usize, k: usize| {
-                paths.get(k * n + i).map_or(0.0, |path| (path[step][axis] - present[i][axis]) as f32)
-            };
-            [0, 1].map(|axis| Lanes(from_fn(|lane| at(axis, first + lane))))
-        };
-        let firsts = |(i, step)| (0..count).step_by(LANES).map(move |first| (i, step, first));
-        let lanes =
-            (0..n).flat_map(|i| (0..=HORIZON).map(move |step| (i, step))).flat_map(firsts).map(lanes_of).collect();
-        let (mut parts, mut shares) = (vec![0; n], vec![Vec::new(); n]);
-        for (p, part) in futures.parts().iter().enumerate() {
+        let mut shares = vec![Vec::new(); n];
+        for part in futures.parts() {
             for (row, &i) in part.pedestrians().iter().enumerate() {
-                (parts[i], shares[i]) = (p, part.shares(row, count));
+                shares[i] = part.shares(row, count);
             }
         }
-        let outermost = deviations.iter().map(|(_, blocks)| blocks.outermost()).fold(0.0, f32::max);
-        Ok(Self { n, paths, scales, lanes, present, rings, origin, deviations, outermost, parts, shares })
-    }
-
-    /// These pedestrians, in ascending order, by the part that they belong to.
-    pub(super) fn by_part(&self, pedestrians: impl Iterator<Item = usize>) -> BTreeMap<usize, Vec<usize>> {
-        let mut by_part: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for i in pedestrians {
-            by_part.entry(self.parts[i]).or_default().push(i);
-        }
-        by_part
+        let deviations = COUNTS.map(|of_each| (0..count).map(|k| Deviations::of_hypothesis(k, of_each)).collect());
+        let counts: Vec<Vec<usize>> =
+            shares.iter().map(|of| of.iter().map(|share| count_of(*share)).collect()).collect();
+        let outermost_of = |i: usize, k: usize| {
+            let of_each: &Vec<Deviations> = &deviations[counts[i][k]];
+            of_each[k].outermost()
+        };
+        let outermost = (0..n).flat_map(|i| lanes(count, move |k| outermost_of(i, k))).collect();
+        let of_step = |i: usize, step: usize| {
+            let (paths, scales, outermost_of) = (&paths, &scales, &outermost_of);
+            (0..count).map(move |k| (paths[k * n + i][step], f64::from(outermost_of(i, k)) * scales[i][step]))
+        };
+        let around = |i: usize| rings(origin, |step| of_step(i, step).chain(of_step(i, step + 1)));
+        let rings = (0..n).map(around).collect();
+        let present: Vec<Position> = (0..n).map(|i| futures.present(i)).collect();
+        let places = |(i, step): (usize, usize)| {
+            let at = |axis: usize| {
+                let (paths, present) = (&paths, present[i]);
+                lanes(count, move |k| (paths[k * n + i][step][axis] - present[axis]) as f32)
+            };
+            at(0).zip(at(1)).map(|(x, y)| [x, y])
+        };
+        let places = (0..n).flat_map(|i| (0..=HORIZON).map(move |step| (i, step))).flat_map(places).collect();
+        Ok(Self { n, paths, scales, places, present, rings, origin, deviations, counts, outermost, shares })
     }
 
     /// The room within `within` metres of the edge of a plan.
     pub(super) fn sweep(&self, plan: &Plan, within: f64) -> Sweep {
         let legs = legs(plan);
         let rings = rings(self.origin, |step| {
-            let of_step = || legs.iter().filter(move |leg| leg.step == step);
-            let radius = of_step().map(|leg| leg.radius).fold(0.0, f64::max);
-            (of_step().flat_map(|leg| leg.positions), within + radius)
+            let of_step = legs.iter().filter(move |leg| leg.step == step);
+            of_step.flat_map(|leg| leg.positions.map(|at| (at, within + leg.radius)))
         });
         Sweep { legs, within, rings }
     }
 
     /// The pedestrians that come close on some hypothesis, and perhaps others.
-    pub(super) fn near(&self, sweep: &Sweep) -> Vec<usize> {
-        (0..self.n).filter(|i: &usize| near(&self.rings[*i], &sweep.rings).is_some()).collect()
+    pub(super) fn near(&self, sweep: &Sweep) -> impl Iterator<Item = usize> {
+        (0..self.n).filter(|i: &usize| near(&self.rings[*i], &sweep.rings).is_some())
     }
 
     /// How likely pedestrian `i`, whose hypotheses have these probabilities, comes close; `None` if surely not.
     pub(super) fn hits(&self, sweep: &Sweep, i: usize, shares: &[f64]) -> Option<Hits> {
-        let hits = Hits { steps: [[0.0; 2]; 2 * HORIZON], of_hypotheses: Vec::new() };
-        let mut search = CrowdSearch { crowd: self, sweep, pedestrian: i, shares, hits };
+        let mut search = CrowdSearch { crowd: self, sweep, pedestrian: i, shares, hits: None };
         Dispatch::detect().run(&mut search);
-        (!search.hits.of_hypotheses.is_empty()).then_some(search.hits)
+        search.hits
+    }
+
+    #[inline(always)]
+    fn deviations(&self, i: usize, k: usize) -> &Deviations {
+        &self.deviations[self.counts[i][k]][k]
     }
 
     /// The least distance (m) of each deviation of pedestrian `i` on its hypothesis `k` from the edge of a plan.
-    pub(super) fn distances(&self, legs: &[CourseLeg], i: usize, k: usize) -> [f64; DEVIATIONS] {
-        let Quadrature { x, y } = &self.deviations[k].0;
-        let mut least = [f64::INFINITY; DEVIATIONS];
+    pub(super) fn distances(&self, legs: &[CourseLeg], i: usize, k: usize) -> Vec<f64> {
+        let deviations = &self.deviations(i, k).exact;
+        let mut least = vec![f64::INFINITY; deviations.len()];
         for leg in legs {
             let approach = leg.approach(&self.paths[k * self.n + i], &self.scales[i]);
-            for (least, z) in least.iter_mut().zip(from_fn::<_, DEVIATIONS, _>(|j| [x[j], y[j]])) {
-                *least = least.min(leg.distance(&approach, z));
+            for (least, z) in least.iter_mut().zip(deviations) {
+                *least = least.min(leg.distance(&approach, *z));
             }
         }
         least
@@ -171,7 +174,15 @@ struct CrowdSearch<'a> {
     sweep: &'a Sweep,
     pedestrian: usize,
     shares: &'a [f64],
-    hits: Hits,
+    hits: Option<Hits>,
+}
+
+/// The deviations of a hypothesis that come close, one bit for each.
+#[derive(Debug, Clone, Copy, Default)]
+struct Close {
+    at_moment: u64,
+    before: u64,
+    during: u64,
 }
 
 impl Kernel for &mut CrowdSearch<'_> {
@@ -181,66 +192,71 @@ impl Kernel for &mut CrowdSearch<'_> {
         let Some(near) = near(&crowd.rings[i], rings) else { return };
         let count = self.shares.len();
         let chunks = count.div_ceil(LANES);
-        // Of each hypothesis the deviations that come close during each step, then those that are at the moment itself.
-        let mut close = vec![[0_u64; HORIZON + 1]; count];
+        let mut close = vec![Close::default(); count];
+        // During each step, and for the first time.
+        let [mut steps, mut first] = [[[0.0; 2]; HORIZON]; 2];
         for (l, leg) in legs.iter().enumerate().filter(|(_, leg)| near[leg.step] > 0) {
             let course = PedestrianCourse::new(leg, crowd.present[i], &crowd.scales[i], within + leg.radius);
+            let begins = l == 0 || legs[l - 1].step < leg.step;
+            if begins {
+                close.iter_mut().for_each(|close| close.during = 0);
+            }
             for chunk in 0..chunks {
                 // The last lanes may be without a hypothesis.
                 let hypotheses = (1 << LANES.min(count - chunk * LANES)) - 1;
-                let at = |step: usize| &crowd.lanes[(i * (HORIZON + 1) + step) * chunks + chunk];
+                let at = |step: usize| &crowd.places[(i * (HORIZON + 1) + step) * chunks + chunk];
                 let ways = course.ways(simd, at(leg.step), at(leg.step + 1));
-                let mut lanes = ways.within(simd, crowd.outermost) & hypotheses;
+                let mut lanes = ways.within(simd, &crowd.outermost[i * chunks + chunk]) & hypotheses;
                 while lanes > 0 {
                     let lane = lanes.trailing_zeros() as usize;
                     lanes &= lanes - 1;
                     let k = chunk * LANES + lane;
-                    let (way, blocks) = (ways.way(lane), &crowd.deviations[k].1);
-                    let bits = way.close(simd, blocks, ways.nearest(lane));
-                    close[k][leg.step] |= bits;
-                    if l == 0 && bits > 0 {
-                        close[k][HORIZON] = way.at_start().close(simd, blocks, 0.0);
+                    let (way, of_k) = (ways.way(lane), &crowd.deviations(i, k).blocks);
+                    let now = way.close(simd, of_k, ways.nearest(lane));
+                    if now == 0 {
+                        continue;
                     }
+                    let close = &mut close[k];
+                    if l == 0 {
+                        close.at_moment = way.at_start().close(simd, of_k, 0.0);
+                    }
+                    let each = self.shares[k] / (of_k.len() * LANES) as f64;
+                    for (sums, new) in [(&mut steps, now & !close.during), (&mut first, now & !close.before)] {
+                        let share = |bits: u64| each * f64::from(bits.count_ones());
+                        let [moment, later] = &mut sums[leg.step];
+                        *later += share(new & !close.at_moment);
+                        if close.at_moment > 0 {
+                            *moment += share(new & close.at_moment);
+                        }
+                    }
+                    close.during |= now;
+                    close.before |= now;
                 }
             }
         }
-        for (k, (close, share)) in close.iter().zip(self.shares).enumerate() {
-            let [during @ .., first] = close;
-            if *share > 0.0 && during.iter().any(|bits| *bits > 0) {
-                self.hits.add(k, *share, *during, *first);
-            }
-        }
+        let mut until = [0.0; 2];
+        let so_far = first.map(|new| {
+            until = [until[0] + new[0], until[1] + new[1]];
+            until
+        });
+        let hits: Hits = from_fn(|row| [steps, so_far].as_flattened()[row]);
+        self.hits = (until[0] + until[1] > 0.0).then_some(hits);
     }
 }
 
-impl Hits {
-    /// Adds the deviations from hypothesis `k`, which has this probability, that come close during each step, and those
-    /// that are close at the moment itself.
-    #[inline(always)]
-    fn add(&mut self, k: usize, share: f64, during: [u64; HORIZON], first: u64) {
-        let count = |bits: u64| f64::from(bits.count_ones()) / DEVIATIONS as f64;
-        let (mut until, mut steps) = (0, [[0.0; 2]; 2 * HORIZON]);
-        for (step, now) in during.into_iter().enumerate() {
-            until |= now;
-            for (index, bits) in [(step, now), (HORIZON + step, until)] {
-                steps[index] = [if first > 0 { count(bits & first) } else { 0.0 }, count(bits & !first)];
-            }
-        }
-        for (sum, of_hypothesis) in self.steps.as_flattened_mut().iter_mut().zip(steps.as_flattened()) {
-            *sum += share * of_hypothesis;
-        }
-        self.of_hypotheses.push((k, steps));
-    }
+/// Values of hypotheses, sixteen at a time; 0 behind the last one.
+fn lanes(count: usize, value: impl Fn(usize) -> f32) -> impl Iterator<Item = Lanes> {
+    let at = move |k: usize| if k < count { value(k) } else { 0.0 };
+    (0..count).step_by(LANES).map(move |first| Lanes(from_fn(|lane| at(first + lane))))
 }
 
-/// Discs around the positions of each step, larger by a margin (m), and by what rounding may hide.
-fn rings<P: Iterator<Item = Position> + Clone>(origin: Position, of_step: impl Fn(usize) -> (P, f64)) -> Rings {
+/// Discs around discs of each step, with what rounding may hide.
+fn rings<D: Iterator<Item = (Position, f64)> + Clone>(origin: Position, of_step: impl Fn(usize) -> D) -> Rings {
     let discs: [[f64; 3]; HORIZON] = from_fn(|step| {
-        let (positions, margin) = of_step(step);
-        let [low, high] = bounds(positions.clone()).unwrap_or([origin; 2]);
+        let discs = of_step(step);
+        let [low, high] = bounds(discs.clone().map(|(at, _)| at)).unwrap_or([origin; 2]);
         let middle = between(low, high, 0.5);
-        let square = |at: Position| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
-        let radius = positions.map(square).fold(0.0, f64::max).sqrt() + margin;
+        let radius = discs.map(|(at, radius)| distance(at, middle) + radius).fold(0.0, f64::max);
         let [x, y] = [0, 1].map(|axis| middle[axis] - origin[axis]);
         [x, y, radius + ROUNDING * (x.abs() + y.abs() + radius)]
     });

@@ -3,13 +3,29 @@
 #![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
 
 use super::course::CourseLeg;
-use super::quadrature::DeviationBlocks;
 use ddl_core::{HORIZON, Position};
 use ddl_simd::{LANES, Lanes, Simd};
 use fearless_simd::prelude::*;
+use std::array::from_fn;
 
 /// What `f32` may be wrong by.
 const ROUNDING: f32 = 4e-6;
+
+/// Sixteen deviations.
+#[derive(Debug)]
+pub(super) struct DeviationBlock {
+    offsets: [Lanes; 2],
+    /// None is longer.
+    pub(super) most: f32,
+}
+
+impl DeviationBlock {
+    pub(super) fn of(deviations: &[Position; LANES]) -> Self {
+        let lanes = |axis: usize| Lanes(from_fn(|lane| deviations[lane][axis] as f32));
+        let longest = deviations.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+        Self { offsets: [lanes(0), lanes(1)], most: (longest * (1.0 + f64::from(ROUNDING))) as f32 }
+    }
+}
 
 /// From the plan to a pedestrian (m) and its scale (m), where the leg begins and what is added until its end; the
 /// distance that counts as close.
@@ -81,11 +97,11 @@ pub(super) struct PedestrianWays<'a> {
 }
 
 impl PedestrianWays<'_> {
-    /// Those on which a deviation of this many scales may come close, one bit for each.
+    /// Those on which a deviation may come close, one bit for each, of the longest of each in scales.
     #[inline(always)]
-    pub(super) fn within<S: Simd>(&self, simd: S, outermost: f32) -> u64 {
+    pub(super) fn within<S: Simd>(&self, simd: S, outermost: &Lanes) -> u64 {
         let [s, s1] = self.course.scales;
-        let reach = self.course.reach + s.max(s1) * outermost;
+        let reach = simd.load(&outermost.0) * s.max(s1) + self.course.reach;
         simd.load(&self.nearest.0).simd_le(reach * reach).to_bitmask()
     }
 
@@ -109,31 +125,32 @@ impl PedestrianWay {
         Self { dx: 0.0, dy: 0.0, ds: 0.0, ..self }
     }
 
-    /// The deviations that come close, one bit for each. `nearest`: the least squared distance of the path itself.
+    /// The deviations of these blocks, farther out from one to the next, that come close, one bit for each. `nearest`:
+    /// the least squared distance of the path itself.
     #[inline(always)]
-    pub(super) fn close<S: Simd>(&self, simd: S, deviations: &DeviationBlocks, nearest: f32) -> u64 {
+    pub(super) fn close<S: Simd>(&self, simd: S, blocks: &[DeviationBlock], nearest: f32) -> u64 {
         let most = self.s + self.ds.max(0.0);
         let mut close = 0;
         // The outermost deviations first: further inside none come close if these stay away.
-        for (b, [x, y]) in deviations.blocks.iter().enumerate().rev() {
-            let reach = self.r + most * deviations.most[b];
+        for (b, block) in blocks.iter().enumerate().rev() {
+            let reach = self.r + most * block.most;
             if nearest > reach * reach {
                 break;
             }
-            close |= self.close_of_block(simd, x, y) << (b * LANES);
+            close |= self.close_of_block(simd, &block.offsets) << (b * LANES);
         }
         close
     }
 
     #[inline(always)]
-    fn close_of_block<S: Simd>(&self, simd: S, zx: &Lanes, zy: &Lanes) -> u64 {
+    fn close_of_block<S: Simd>(&self, simd: S, [zx, zy]: &[Lanes; 2]) -> u64 {
         let (zx, zy) = (simd.load(&zx.0), simd.load(&zy.0));
-        let (x, y) = (zx * self.s + self.x, zy * self.s + self.y);
-        let (dx, dy) = (zx * self.ds + self.dx, zy * self.ds + self.dy);
+        let (x, y) = (zx.mul_add(self.s, self.x), zy.mul_add(self.s, self.y));
+        let (dx, dy) = (zx.mul_add(self.ds, self.dx), zy.mul_add(self.ds, self.dy));
         // Close where a u^2 + 2 b u + c <= 0 for a share u of the leg.
-        let a = dx * dx + dy * dy;
-        let b = x * dx + y * dy;
-        let c = x * x + y * y - self.r * self.r;
+        let a = dx.mul_add(dx, dy * dy);
+        let b = x.mul_add(dx, y * dy);
+        let c = x.mul_add(x, y.mul_sub(y, self.r * self.r));
         let on_the_way = b.simd_lt(0.0) & (a + b).simd_gt(0.0) & (a * c).simd_le(b * b);
         let is_close = c.simd_le(0.0) | (a + b + b + c).simd_le(0.0) | on_the_way;
         is_close.to_bitmask()

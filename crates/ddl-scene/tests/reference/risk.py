@@ -1,5 +1,5 @@
 # Writes risk.json: risks and clearances of scenes like those of src/fixture.rs by Monte Carlo, with numpy 2.4.6:
-# 200,000 deviations of every pedestrian in every future. `python3 risk.py` in this folder; again after a change of
+# 200,000 deviations of every pedestrian on every hypothesis. `python3 risk.py` in this folder; again after a change of
 # src/energy.json.
 import json
 
@@ -73,23 +73,22 @@ def scene(rng, size, deviation, ego):
     }
     reach = case["within"] + max(row[3] for row in case["plan"] if row[0] < 4.8)
     # Of each pedestrian and future: probabilities to be close of those who are now, and of others.
-    close, clearances, nearest = np.zeros((n, k, 2, 24)), np.zeros(n), 0
-    for future in range(k):
-        far = np.full(DRAWS, np.inf)
-        for i in range(n):
+    close, clearances, nearest = np.zeros((n, k, 2, 24)), np.zeros(n), np.full(DRAWS, np.inf)
+    for i in range(n):
+        follows, edges = rng.choice(k, DRAWS, p=weights), []
+        for future in range(k):
             z = rng.standard_normal((DRAWS, 2)) * np.sqrt(3 / rng.chisquare(3, DRAWS))[:, None]
             gaps = distances(case, i, future, z)
-            edge = np.maximum(gaps.min((0, 1)), 0)
-            far = np.minimum(far, edge)
-            clearances[i] += weights[future] * edge.mean()
+            edges.append(np.maximum(gaps.min((0, 1)), 0))
+            clearances[i] += weights[future] * edges[-1].mean()
             now = gaps[0, 0] <= case["within"]
             during = gaps.min(1) <= case["within"]
             both = np.concatenate([during, np.logical_or.accumulate(during)])
             close[i, future] = [(both & now).mean(1), (both & ~now).mean(1)]
-        nearest += weights[future] * far.mean()
+        nearest = np.minimum(nearest, np.choose(follows, edges))
     results = {}
     for name in ("unseen", "seen"):
-        probabilities, nobody, joint = np.zeros(n), np.ones((k, 24)), weights.copy()
+        probabilities, nobody = np.zeros(n), np.ones(24)
         for i in set(range(n)) - {ego}:
             factors, odds = (np.ones(k), 1.0) if name == "unseen" else response(case, i, reach)
             own = weights * factors / (weights @ factors)
@@ -98,12 +97,10 @@ def scene(rng, size, deviation, ego):
             share = later / max(1 - now, 1e-300)
             of_futures = close[i, :, 0] + odds / (1 - share + share * odds) * close[i, :, 1]
             probabilities[i] = own @ of_futures[:, -1]
-            if now + later > 0.004:
-                nobody *= 1 - of_futures
-                joint *= factors
-        results[name] = np.concatenate([probabilities, joint @ (1 - nobody) / joint.sum()])
+            nobody *= 1 - own @ of_futures
+        results[name] = np.concatenate([probabilities, 1 - nobody])
     case |= {name: np.round(values, 4).tolist() for name, values in results.items()}
-    return case | {"clearances": np.round(clearances, 4).tolist(), "nearest": round(nearest, 4)}
+    return case | {"clearances": np.round(clearances, 4).tolist(), "nearest": round(nearest.mean(), 4)}
 
 
 rng = np.random.default_rng(1)
