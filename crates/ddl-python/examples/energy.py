@@ -190,7 +190,9 @@ def main() -> None:
         sys.exit(__doc__)
     moments = {words: moments_of(words) for words in sys.argv[1:]}
     for crowded in CROWDED:
-        places = {words: joined(features(window, alone, crowded) for window, alone, _ in of) for words, of in moments.items()}
+        places = {
+            words: joined(features(window, alone, crowded) for window, alone, _ in of) for words, of in moments.items()
+        }
         theta = fit(list(places.values()))
         value = np.mean([loss(theta, place)[0] for place in places.values()])
         print(f"contact distance of crowds {crowded} m: {value:.4f} nats")
@@ -201,7 +203,12 @@ def main() -> None:
             gain = loss(np.zeros(19), place)[0] - loss(left, place)[0]
             print(f"{words}: {len(place[0])} pedestrians, {gain:.3f} nats each when it is left out", flush=True)
     seen = [answers(of) for of in moments.values()]
-    shipped = [*np.delete(SHIPPED["shares"], 1)[:2], SHIPPED["shares"][3], *SHIPPED["strangers"], *SHIPPED["companions"]]
+    shipped = [
+        *np.delete(SHIPPED["shares"], 1)[:2],
+        SHIPPED["shares"][3],
+        *SHIPPED["strangers"],
+        *SHIPPED["companions"],
+    ]
     for name, start in (("nobody keeps away", np.zeros(8)), ("shipped", np.array(shipped))):
         print(f"{name}: {np.mean([avoidance(start, place) for place in seen]):.4f} nats an answer")
     best: Any = minimize(lambda t: np.mean([avoidance(t, place) for place in seen]), shipped, method="Powell")
