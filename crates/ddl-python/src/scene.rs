@@ -57,8 +57,8 @@ impl FuturesHandle {
 
 #[pymethods]
 impl FuturesHandle {
-    /// For p plans of these rows and lengths, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each
-    /// step and until its end `(p, 12)`; and texts about doubtful plans.
+    /// For p plans of these rows and lengths, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian
+    /// `(p, n)`, during each step and until its end `(p, 12)`; and texts about doubtful plans.
     fn risks<'py>(
         &self,
         py: Python<'py>,

@@ -4,7 +4,7 @@
 //! distributed by Student's t ([`Spread`](ddl_core::Spread)), lasts for the whole future, grows with the scale `s_i(t)`
 //! and is independent of those of other pedestrians. At the moment itself the scale is the deviation of the last
 //! observed position, 0 for a row; between the steps and the rows of the plan everything moves on straight lines. With
-//! the share `P_ih` of deviations that come close, and the share `w_ih` of the samples of the scene in which i follows h,
+//! the share `P_ih` of deviations that come close, and the share `w_ih` of samples of the scene in which i follows h,
 //!
 //! ```text
 //! P(pedestrian i) = sum_h w_ih P_ih,    P(somebody) = 1 - prod_i (1 - P(pedestrian i))
@@ -15,7 +15,7 @@
 //! and the hypotheses of those who walk with the pedestrian on the plan get other weights.
 //!
 //! Shares are those of 16 to 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
-//! results depend on nothing but their input. Less than 1/64 of a likely hypothesis, or 1/16 of another, may count as 0.
+//! results depend on nothing but their input. Less than 1/64 of a likely hypothesis, 1/16 of another, may count as 0.
 
 mod course;
 mod crowd;

@@ -199,7 +199,9 @@ impl Kernel for &mut CrowdSearch<'_> {
             let course = PedestrianCourse::new(leg, crowd.present[i], &crowd.scales[i], within + leg.radius);
             let begins = l == 0 || legs[l - 1].step < leg.step;
             if begins {
-                close.iter_mut().for_each(|close| close.during = 0);
+                for close in &mut close {
+                    close.during = 0;
+                }
             }
             for chunk in 0..chunks {
                 // The last lanes may be without a hypothesis.
