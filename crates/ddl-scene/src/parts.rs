@@ -52,8 +52,7 @@ impl ScenePart {
         shares
     }
 
-    /// The probability that some of its pedestrians do something, of the probabilities that each does not on each of its
-    /// hypotheses.
+    /// The probability that some pedestrians do something, of the probabilities that each does not, by hypothesis.
     pub(crate) fn somebody(&self, not_done: &[(usize, Vec<f64>)]) -> f64 {
         let of_each: Vec<(&Vec<u8>, &Vec<f64>)> = not_done
             .iter()
