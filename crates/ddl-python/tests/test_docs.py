@@ -104,6 +104,15 @@ def test_other_formats(tracks, tmp_path):
     assert "(12, 2) (12, " in ran.stdout and len(rows) % 12 == 0 and len(rows[0].split()) == 4
 
 
+def test_a_sampling_planner():
+    tracks = CHECKOUT / "datasets/sample.csv"
+    program = [sys.executable, "-W", "ignore", CHECKOUT / "crates/ddl-python/examples/mppi.py", tracks, "2.5", "8"]
+    ran = subprocess.run(program, capture_output=True, text=True, timeout=300, check=False)
+    assert ran.returncode == 0, ran.stderr
+    away, closest = re.findall(r"([\d.]+) m from", ran.stdout)
+    assert float(away) < 0.5 and float(closest) > 0.3
+
+
 def test_a_torch_model():
     pytest.importorskip("torch")
     program = [sys.executable, CHECKOUT / "crates/ddl-python/examples/own_model_torch.py", "simulated", "3"]
