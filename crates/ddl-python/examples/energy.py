@@ -25,8 +25,10 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize
 from scipy.special import log_expit, logit, logsumexp, softmax
 
-Floats, Integers, Flags = NDArray[np.float64], NDArray[np.int64], NDArray[np.bool_]
-Features = tuple[Floats, Floats, Floats]
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
+Features = tuple[Floats, ...]
 NEAR, SCALE = 0.4, 0.25  # m
 CROWDED = [0.15, 0.22, 0.3, 0.4]  # m: contact distances where all let others come near
 CROWDING = [0.25, 0.75]  # shares of people around who do: NEAR until the first, CROWDED from the second on
@@ -130,7 +132,7 @@ def fit(places: list[Features]) -> Floats:
     return np.asarray(found.x)
 
 
-def joined(parts: Iterable[tuple[Floats, ...]]) -> tuple[Floats, ...]:
+def joined(parts: Iterable[Features]) -> Features:
     return tuple(np.concatenate(column) for column in zip(*parts, strict=True))
 
 
@@ -148,7 +150,7 @@ def moments_of(words: str) -> Moments:
     return [moment for moment in both if moment[1].valid.all()]
 
 
-def answers(moments: Moments) -> tuple[Floats, ...]:
+def answers(moments: Moments) -> Features:
     """Of people near true paths of others, for each distance of WITHIN: whether they came close, the logarithm of the
     odds if they do not see the plan, of companions if they move as far as it does, and four features: the distance's
     index, whether it is a companion, the logarithm of the present or kept distance, and crowding.
@@ -175,7 +177,7 @@ def answers(moments: Moments) -> tuple[Floats, ...]:
     return joined(rows)
 
 
-def avoidance(theta: Floats, place: tuple[Floats, ...]) -> float:
+def avoidance(theta: Floats, place: Features) -> float:
     """Negative log-likelihood, nats an answer. ``theta``: shares at the other distances, of strangers, companions."""
     happened, odds, index, told, of, crowding = place
     share = np.array([theta[0], 1.0, *theta[1:3]])[index.astype(int)]
