@@ -54,7 +54,7 @@ fn place() -> Place {
     for name in Convention::Star.file_names() {
         place.write(&format!("wrong/{name}"), "10\t1\t1.0\t2.0\n10\t2\t3.0\t4.0\n");
     }
-    place.write("long.txt", "1 ".repeat(1 << 20));
+    place.write("long.txt", "1 ".repeat(1 << 24));
     place.write("folder/tracks.csv", place.read("tracks.csv"));
     std::fs::hard_link(place.at("tracks.csv"), place.at("hard.csv")).unwrap();
     #[cfg(unix)]

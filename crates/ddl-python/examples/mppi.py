@@ -49,7 +49,9 @@ def costs_of(plans: Floats, velocities: Floats, risks: Floats, goal: Floats) -> 
 
 def main(tracks: str, fps: float, pedestrian: str) -> None:
     recording, forecaster, random = ddl.read(tracks, fps=fps), ddl.Forecaster(), np.random.default_rng(0)
-    mine = recording.id == type(recording.id[0])(pedestrian)
+    mine = recording.id.astype(str) == pedestrian
+    if not mine.any():
+        sys.exit(f"{tracks} has no pedestrian {pedestrian}")
     goal = np.array([recording.x[mine][-1], recording.y[mine][-1]])
     begin = recording.frame[mine][0]
     robot = np.array([recording.x[mine][0], recording.y[mine][0]])
@@ -63,7 +65,9 @@ def main(tracks: str, fps: float, pedestrian: str) -> None:
             now = live.observe(int(frame), recording.id[here], people)
             if frame < begin or np.linalg.norm(goal - robot) < 0.5:
                 continue
-            robot = robot + (frame - before) / fps * nominal[0]
+            passed = (frame - before) / fps
+            robot = robot + passed * nominal[0]
+            nominal[:-1] += min(passed / STEP, 1.0) * np.diff(nominal, axis=0)
             before = frame
             if len(people) > 0:
                 closest = min(closest, float(np.linalg.norm(people - robot, axis=1).min()))
@@ -81,4 +85,6 @@ def main(tracks: str, fps: float, pedestrian: str) -> None:
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
     main(sys.argv[1], float(sys.argv[2]), sys.argv[3])

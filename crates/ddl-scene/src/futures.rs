@@ -14,8 +14,8 @@ const EQUAL_WEIGHTS: f64 = 1e-9;
 /// A scene of N pedestrians as a product of independent [parts](ScenePart), and K weighted futures drawn from it: in
 /// future k every pedestrian follows its hypothesis k of [`forecast`](Self::forecast).
 ///
-/// Risk and occupancy are computed from the hypotheses of each pedestrian and the samples of its part, not from the K
-/// futures. Around its path a pedestrian is distributed as the [spread](ddl_core::Spread) of the forecast states.
+/// Risk and occupancy are computed from the hypotheses of each pedestrian by their share of the samples, not from the
+/// K futures. Around its path a pedestrian is distributed as the [spread](ddl_core::Spread) of the forecast states.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Futures {
     present: Vec<Position>,

@@ -61,7 +61,7 @@ double cost(double risk, const ddl::Plan& plan, const Velocities& velocities) {
 }  // namespace
 
 int main(int count, char** words) try {
-    const int rollouts = count > 1 ? std::max(1, std::atoi(words[1])) : 2000;
+    const int rollouts = count > 1 ? std::clamp(std::atoi(words[1]), 1, 100000) : 2000;
     ddl::Model model("world");
     ddl::Live live(model);
     ddl::Forecast forecast;
@@ -74,10 +74,17 @@ int main(int count, char** words) try {
         const double now = tick * ticks;
         std::vector<ddl::Observation> seen;
         for (int i = 0; i < 8; ++i) seen.push_back(person(i, now));
-        for (const auto& one : seen) closest = std::min(closest, std::hypot(one.position.x - robot.x, one.position.y - robot.y));
+        for (const auto& one : seen) {
+            closest = std::min(closest, std::hypot(one.position.x - robot.x, one.position.y - robot.y));
+        }
         live.observe(now, seen, forecast, ddl::joint());
         if (forecast.pedestrians() == 0) continue;  // nobody is there
 
+        // The last plan, a tick later.
+        for (int s = 0; s + 1 < steps; ++s) {
+            const ddl::Point change = {nominal[s + 1].x - nominal[s].x, nominal[s + 1].y - nominal[s].y};
+            nominal[s] = {nominal[s].x + tick / step * change.x, nominal[s].y + tick / step * change.y};
+        }
         std::vector<Velocities> sampled(rollouts, nominal);  // the first is the last plan itself
         for (int r = 1; r < rollouts; ++r) sampled[r] = rollout(nominal, random);
         std::vector<ddl::Plan> plans;

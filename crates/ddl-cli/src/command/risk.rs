@@ -39,8 +39,7 @@ pub(crate) struct RiskCommand {
     /// People do not see who follows the plan; otherwise they keep away as from a pedestrian
     #[arg(long)]
     unseen: bool,
-    /// Add the expected least distance of people who do not see the plan, which takes some 10 ms for each plan; not
-    /// with --ego
+    /// Add the expected least distance of people who do not see the plan, not with --ego
     #[arg(long, conflicts_with = "ego")]
     nearest: bool,
     /// Format: csv (one row per moment and plan, with the pedestrian most at risk and the risk until each step) or

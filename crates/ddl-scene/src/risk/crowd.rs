@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
 
 use super::course::{CourseLeg, legs};
-use super::quadrature::{COUNTS, count_of, deviations_of_hypothesis};
+use super::quadrature::{COUNTS, count_index, deviations_of_hypothesis};
 use super::way::{DeviationBlock, PedestrianCourse};
 use crate::{error::SceneError, futures::Futures, plan::Plan};
 use ddl_core::{HORIZON, Position, between, bounds, distance};
@@ -30,8 +30,8 @@ pub(super) struct CrowdAtRisk {
     origin: Position,
     /// Of each number of deviations `[K]`: those from each hypothesis.
     deviations: [Vec<Deviations>; COUNTS.len()],
-    /// `[N][K]`: which of them each has.
-    counts: Vec<Vec<usize>>,
+    /// `[N][K]`: the index of the number that each has.
+    count_indices: Vec<Vec<usize>>,
     /// `[N][K / 16]`: none of the deviations from a hypothesis is longer.
     outermost: Vec<Lanes>,
     /// `[N][K]`: probabilities of the hypotheses.
@@ -76,7 +76,8 @@ pub(super) type Closeness = [f64; 2];
 pub(super) type Hits = [Closeness; 2 * HORIZON];
 
 impl CrowdAtRisk {
-    pub(super) fn new(futures: &Futures) -> Result<Self, SceneError> {
+    /// Pedestrians whose hypotheses may get other weights have the largest number of deviations from each.
+    pub(super) fn new(futures: &Futures, is_reweighted: impl Fn(usize) -> bool) -> Result<Self, SceneError> {
         let (n, forecast) = (futures.pedestrians(), futures.hypotheses());
         let count = forecast.hypotheses();
         let scales = (0..n).map(|i| {
@@ -102,10 +103,14 @@ impl CrowdAtRisk {
             }
         }
         let deviations = COUNTS.map(|of_each| (0..count).map(|k| Deviations::of_hypothesis(k, of_each)).collect());
-        let counts: Vec<Vec<usize>> =
-            shares.iter().map(|of| of.iter().map(|share| count_of(*share)).collect()).collect();
+        let indices_of = |(i, shares): (usize, &Vec<f64>)| {
+            let is_reweighted = is_reweighted(i);
+            let index = |share: &f64| if is_reweighted { COUNTS.len() - 1 } else { count_index(*share) };
+            shares.iter().map(index).collect()
+        };
+        let count_indices: Vec<Vec<usize>> = shares.iter().enumerate().map(indices_of).collect();
         let outermost_of = |i: usize, k: usize| {
-            let of_each: &Vec<Deviations> = &deviations[counts[i][k]];
+            let of_each: &Vec<Deviations> = &deviations[count_indices[i][k]];
             of_each[k].outermost()
         };
         let outermost = (0..n).flat_map(|i| lanes(count, move |k| outermost_of(i, k))).collect();
@@ -124,7 +129,7 @@ impl CrowdAtRisk {
             at(0).zip(at(1)).map(|(x, y)| [x, y])
         };
         let places = (0..n).flat_map(|i| (0..=HORIZON).map(move |step| (i, step))).flat_map(places).collect();
-        Ok(Self { n, paths, scales, places, present, rings, origin, deviations, counts, outermost, shares })
+        Ok(Self { n, paths, scales, places, present, rings, origin, deviations, count_indices, outermost, shares })
     }
 
     /// The room within `within` metres of the edge of a plan.
@@ -151,7 +156,7 @@ impl CrowdAtRisk {
 
     #[inline(always)]
     fn deviations(&self, i: usize, k: usize) -> &Deviations {
-        &self.deviations[self.counts[i][k]][k]
+        &self.deviations[self.count_indices[i][k]][k]
     }
 
     /// The least distance (m) of each deviation of pedestrian `i` on its hypothesis `k` from the edge of a plan.

@@ -1,17 +1,18 @@
 //! Deviations of equal probability, by which integrals over the spread are computed.
 
 use ddl_core::Position;
+use ddl_simd::LANES;
 use std::f64::consts::PI;
 
-/// Numbers of deviations from a hypothesis.
-pub(super) const COUNTS: [usize; 3] = [16, 32, 64];
+/// Numbers of deviations from a hypothesis: multiples of `LANES`, each deviation with a bit of a `u64`.
+pub(super) const COUNTS: [usize; 3] = [LANES, 2 * LANES, u64::BITS as usize];
 /// A hypothesis of less than such a probability has the smaller number.
 const LIKELY: [f64; 2] = [0.08, 0.16];
 /// Multiples of these, without their whole parts, fill a square evenly: powers of 1 / 1.3247, the plastic number.
 const PLASTIC: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053];
 
-/// Which of the [`COUNTS`] a hypothesis of this probability has.
-pub(super) fn count_of(share: f64) -> usize {
+/// The index of the number of deviations, among [`COUNTS`], of a hypothesis of this probability.
+pub(super) fn count_index(share: f64) -> usize {
     LIKELY.partition_point(|least| *least <= share)
 }
 

@@ -135,6 +135,39 @@ fn companions_go_on_as_the_plan_does() {
     }
 }
 
+/// Of twenty hypotheses of a companion one remains: its risk has all deviations, so it does not depend on the axes.
+#[test]
+fn a_hypothesis_that_gains_weight_is_as_accurate_as_others() {
+    let of_angle = |angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let turned = |[x, y]: Position| [cos * x - sin * y, sin * x + cos * y];
+        let past = |x: f64| -> Vec<Position> { (0..OBSERVED).map(|t| turned([x, 0.48 * (t as f64 - 7.0)])).collect() };
+        let ids = vec![PedestrianId(1), PedestrianId(2)];
+        let window = Window::new("yard", 0, 10, ids, vec![past(0.0), past(0.8)]).unwrap();
+        // One stops after a metre; the others go on, some faster than others.
+        let path = |x: f64, k: usize| {
+            (1..=HORIZON).map(move |t| {
+                let way = 0.48 * t as f64;
+                [x, if k == 0 { way.min(1.0) } else { way * (0.9 + 0.01 * k as f64) }]
+            })
+        };
+        let positions = [0.0, 0.8].iter().flat_map(|&x| (0..20).flat_map(move |k| path(x, k))).map(turned).collect();
+        let spread = Spread {
+            scales: vec![0.15; 2 * HORIZON],
+            paces: vec![Pace::Walking; 2],
+            regions: RegionTable::of(&[&[[1.0; HORIZON]; 9]; 3], &[0.5]).unwrap().into(),
+        };
+        let forecast = Forecast::new(2, 20, positions, vec![0.05; 40], None).unwrap().with_spread(spread).unwrap();
+        let [end, zero] = [turned([0.0, 1.0]), [0.0; 2]];
+        let plan = plan(&[[0.0, zero[0], zero[1], 0.0], [1.0, end[0], end[1], 0.0]]);
+        let futures = Futures::new(&window, forecast, None).unwrap();
+        futures.risks_if_seen(&[plan], 0.5, Some(0)).unwrap().remove(0).total
+    };
+    let totals: Vec<f64> = (0..12).map(|turn| of_angle(0.5 * f64::from(turn))).collect();
+    let [least, most] = [totals.iter().copied().fold(1.0, f64::min), totals.iter().copied().fold(0.0, f64::max)];
+    assert!(least > 0.005 && most - least < 0.02, "{totals:?}");
+}
+
 #[test]
 fn what_cannot_be_asked_is_refused() {
     let futures = futures(&[[0.0; 2]], &[vec![[1.0, 0.0]]], &[1.0], &[0.5]);
@@ -145,6 +178,8 @@ fn what_cannot_be_asked_is_refused() {
     for within in [1e9, 1e19, 1e38, 1e300] {
         assert_eq!(one(&futures, &plan(&[[0.0; 4]]), within).total.to_bits(), 1.0_f64.to_bits(), "{within}");
     }
+    let touched = futures.clearances(&[plan(&[[0.0, 0.0, 0.0, 100.0]])]).unwrap().remove(0);
+    assert!(touched.nearest.is_sign_positive() && touched.nearest < 1e-300, "{touched:?}");
     let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![vec![[0.0; 2]; 8]]).unwrap();
     let bare = Forecast::with_equal_weights(1, 1, vec![[0.0; 2]; 12]).unwrap();
     let bare = Futures::new(&window, bare, None).unwrap();
@@ -166,7 +201,7 @@ proptest! {
         // So many deviations do such hypotheses have.
         let (weights, counts) = ([0.85, 0.1, 0.05], [64, 32, 16]);
         let (futures, plan) = (with_deviation(&futures(&starts, &velocities, &weights, &scales), now), plan(&rows));
-        let crowd = CrowdAtRisk::new(&futures).unwrap();
+        let crowd = CrowdAtRisk::new(&futures, |_| false).unwrap();
         let sweep = crowd.sweep(&plan, within);
         let quadratures = [0, 1, 2].map(|k| deviations_of_hypothesis(k, counts[k]));
         // Times between which everything moves straight, by step.
