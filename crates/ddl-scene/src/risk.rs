@@ -14,9 +14,8 @@
 //! Pedestrians who see a plan respond to it (`response.rs`): the odds that each comes close are divided by a factor,
 //! and the hypotheses of those who walk with the pedestrian on the plan get other weights.
 //!
-//! Shares are those of 16 to 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
-//! results depend on nothing but their input; whoever may get other weights has 64. A risk is wrong by .004 (root mean
-//! square), seldom by more than .02.
+//! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
+//! results depend on nothing but their input. A risk is wrong by .002 (root mean square), seldom by more than .01.
 
 mod course;
 mod crowd;
@@ -101,8 +100,7 @@ impl Futures {
                 expected: "a number of metres, 0 or more",
             });
         }
-        let is_companion = |i: usize| matches!(responses.get(i), Some(Response::Companion { .. }));
-        let crowd = CrowdAtRisk::new(self, is_companion)?;
+        let crowd = CrowdAtRisk::new(self)?;
         let risk = |plan: &Plan| {
             let seen = SeenPlan::new(plan, within);
             let respond = |i: usize| responses.get(i).unwrap_or(&Response::None).to(&seen, self, i);
@@ -117,7 +115,7 @@ impl Futures {
     /// # Errors
     /// The forecast has no spread.
     pub fn clearances(&self, plans: &[Plan]) -> Result<Vec<Clearance>, SceneError> {
-        let crowd = CrowdAtRisk::new(self, |_| false)?;
+        let crowd = CrowdAtRisk::new(self)?;
         Ok(plans.par_iter().map(|plan| self.clearance(&crowd, plan)).collect())
     }
 

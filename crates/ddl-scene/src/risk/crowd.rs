@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "kernels are compiled for the instructions of the processor")]
 
 use super::course::{CourseLeg, legs};
-use super::quadrature::{COUNTS, count_index, deviations_of_hypothesis};
+use super::quadrature::deviations_of_hypothesis;
 use super::way::{DeviationBlock, PedestrianCourse};
 use crate::{error::SceneError, futures::Futures, plan::Plan};
 use ddl_core::{HORIZON, Position, between, bounds, distance};
@@ -28,11 +28,9 @@ pub(super) struct CrowdAtRisk {
     /// `[N]`: around all deviations from all hypotheses.
     rings: Vec<Rings>,
     origin: Position,
-    /// Of each number of deviations `[K]`: those from each hypothesis.
-    deviations: [Vec<Deviations>; COUNTS.len()],
-    /// `[N][K]`: the index of the number that each has.
-    count_indices: Vec<Vec<usize>>,
-    /// `[N][K / 16]`: none of the deviations from a hypothesis is longer.
+    /// `[K]`: those from each hypothesis.
+    deviations: Vec<Deviations>,
+    /// `[K / 16]`: none of the deviations from a hypothesis is longer.
     outermost: Vec<Lanes>,
     /// `[N][K]`: probabilities of the hypotheses.
     pub(super) shares: Vec<Vec<f64>>,
@@ -46,8 +44,8 @@ struct Deviations {
 }
 
 impl Deviations {
-    fn of_hypothesis(k: usize, count: usize) -> Self {
-        let exact = deviations_of_hypothesis(k, count);
+    fn of_hypothesis(k: usize) -> Self {
+        let exact = deviations_of_hypothesis(k);
         let blocks = exact.as_chunks().0.iter().map(DeviationBlock::of).collect();
         Self { exact, blocks }
     }
@@ -76,8 +74,7 @@ pub(super) type Closeness = [f64; 2];
 pub(super) type Hits = [Closeness; 2 * HORIZON];
 
 impl CrowdAtRisk {
-    /// Pedestrians whose hypotheses may get other weights have the largest number of deviations from each.
-    pub(super) fn new(futures: &Futures, is_reweighted: impl Fn(usize) -> bool) -> Result<Self, SceneError> {
+    pub(super) fn new(futures: &Futures) -> Result<Self, SceneError> {
         let (n, forecast) = (futures.pedestrians(), futures.hypotheses());
         let count = forecast.hypotheses();
         let scales = (0..n).map(|i| {
@@ -102,21 +99,11 @@ impl CrowdAtRisk {
                 shares[i] = part.shares(row, count);
             }
         }
-        let deviations = COUNTS.map(|of_each| (0..count).map(|k| Deviations::of_hypothesis(k, of_each)).collect());
-        let indices_of = |(i, shares): (usize, &Vec<f64>)| {
-            let is_reweighted = is_reweighted(i);
-            let index = |share: &f64| if is_reweighted { COUNTS.len() - 1 } else { count_index(*share) };
-            shares.iter().map(index).collect()
-        };
-        let count_indices: Vec<Vec<usize>> = shares.iter().enumerate().map(indices_of).collect();
-        let outermost_of = |i: usize, k: usize| {
-            let of_each: &Vec<Deviations> = &deviations[count_indices[i][k]];
-            of_each[k].outermost()
-        };
-        let outermost = (0..n).flat_map(|i| lanes(count, move |k| outermost_of(i, k))).collect();
+        let deviations: Vec<Deviations> = (0..count).map(Deviations::of_hypothesis).collect();
+        let outermost = lanes(count, |k| deviations[k].outermost()).collect();
         let of_step = |i: usize, step: usize| {
-            let (paths, scales, outermost_of) = (&paths, &scales, &outermost_of);
-            (0..count).map(move |k| (paths[k * n + i][step], f64::from(outermost_of(i, k)) * scales[i][step]))
+            let (paths, scales, deviations) = (&paths, &scales, &deviations);
+            (0..count).map(move |k| (paths[k * n + i][step], f64::from(deviations[k].outermost()) * scales[i][step]))
         };
         let around = |i: usize| rings(origin, |step| of_step(i, step).chain(of_step(i, step + 1)));
         let rings = (0..n).map(around).collect();
@@ -129,7 +116,7 @@ impl CrowdAtRisk {
             at(0).zip(at(1)).map(|(x, y)| [x, y])
         };
         let places = (0..n).flat_map(|i| (0..=HORIZON).map(move |step| (i, step))).flat_map(places).collect();
-        Ok(Self { n, paths, scales, places, present, rings, origin, deviations, count_indices, outermost, shares })
+        Ok(Self { n, paths, scales, places, present, rings, origin, deviations, outermost, shares })
     }
 
     /// The room within `within` metres of the edge of a plan.
@@ -154,14 +141,9 @@ impl CrowdAtRisk {
         search.hits
     }
 
-    #[inline(always)]
-    fn deviations(&self, i: usize, k: usize) -> &Deviations {
-        &self.deviations[self.count_indices[i][k]][k]
-    }
-
     /// The least distance (m) of each deviation of pedestrian `i` on its hypothesis `k` from the edge of a plan.
     pub(super) fn distances(&self, legs: &[CourseLeg], i: usize, k: usize) -> Vec<f64> {
-        let deviations = &self.deviations(i, k).exact;
+        let deviations = &self.deviations[k].exact;
         let mut least = vec![f64::INFINITY; deviations.len()];
         for leg in legs {
             let approach = leg.approach(&self.paths[k * self.n + i], &self.scales[i]);
@@ -213,12 +195,12 @@ impl Kernel for &mut CrowdSearch<'_> {
                 let hypotheses = (1 << LANES.min(count - chunk * LANES)) - 1;
                 let at = |step: usize| &crowd.places[(i * (HORIZON + 1) + step) * chunks + chunk];
                 let ways = course.ways(simd, at(leg.step), at(leg.step + 1));
-                let mut lanes = ways.within(simd, &crowd.outermost[i * chunks + chunk]) & hypotheses;
+                let mut lanes = ways.within(simd, &crowd.outermost[chunk]) & hypotheses;
                 while lanes > 0 {
                     let lane = lanes.trailing_zeros() as usize;
                     lanes &= lanes - 1;
                     let k = chunk * LANES + lane;
-                    let (way, of_k) = (ways.way(lane), &crowd.deviations(i, k).blocks);
+                    let (way, of_k) = (ways.way(lane), &crowd.deviations[k].blocks);
                     let now = way.close(simd, of_k, ways.nearest(lane));
                     if now == 0 {
                         continue;

@@ -1,35 +1,27 @@
 //! Deviations of equal probability, by which integrals over the spread are computed.
 
 use ddl_core::Position;
-use ddl_simd::LANES;
 use std::f64::consts::PI;
 
-/// Numbers of deviations from a hypothesis: multiples of `LANES`, each deviation with a bit of a `u64`.
-pub(super) const COUNTS: [usize; 3] = [LANES, 2 * LANES, u64::BITS as usize];
-/// A hypothesis of less than such a probability has the smaller number.
-const LIKELY: [f64; 2] = [0.08, 0.16];
+/// Number of deviations from a hypothesis: each has a bit of a `u64`.
+const DEVIATIONS: usize = u64::BITS as usize;
 /// Multiples of these, without their whole parts, fill a square evenly: powers of 1 / 1.3247, the plastic number.
 const PLASTIC: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053];
 
-/// The index of the number of deviations, among [`COUNTS`], of a hypothesis of this probability.
-pub(super) fn count_index(share: f64) -> usize {
-    LIKELY.partition_point(|least| *least <= share)
-}
-
 /// Deviations from hypothesis `k` in scales of the spread, farther out from one to the next.
 ///
-/// Of `count` deviations number j has the distance of the probability (j + u) / count, and the golden angle to the one
+/// Of n deviations number j has the distance of the probability (j + u) / n, and the golden angle to the one
 /// before. The share u, 1/2 for the first hypothesis, and the first angle are others for each, so that hypotheses that
 /// are alike have more deviations together.
-pub(super) fn deviations_of_hypothesis(k: usize, count: usize) -> Vec<Position> {
+pub(super) fn deviations_of_hypothesis(k: usize) -> Vec<Position> {
     let golden = PI * (3.0 - 5.0_f64.sqrt());
     let share = (0.5 + PLASTIC[0] * k as f64).fract();
     let turn = 2.0 * PI * (PLASTIC[1] * k as f64).fract();
     let polar = |j: usize| {
         let (sin, cos) = (turn + golden * j as f64).sin_cos();
-        [cos, sin].map(|of| radius((j as f64 + share) / count as f64) * of)
+        [cos, sin].map(|of| radius((j as f64 + share) / DEVIATIONS as f64) * of)
     };
-    (0..count).map(polar).collect()
+    (0..DEVIATIONS).map(polar).collect()
 }
 
 /// Probability that Student's t with 3 degrees of freedom, in two dimensions, lies within a distance (in scales).

@@ -198,12 +198,10 @@ proptest! {
         let shift = if far { 3e5 } else { 0.0 };
         let starts: Vec<Position> = starts.iter().map(|at| at.map(|x| x + shift)).collect();
         let rows: Vec<_> = rows.iter().map(|&[t, x, y, r]| [t, x + shift, y + shift, r]).collect();
-        // So many deviations do such hypotheses have.
-        let (weights, counts) = ([0.85, 0.1, 0.05], [64, 32, 16]);
-        let (futures, plan) = (with_deviation(&futures(&starts, &velocities, &weights, &scales), now), plan(&rows));
-        let crowd = CrowdAtRisk::new(&futures, |_| false).unwrap();
+        let (futures, plan) = (with_deviation(&futures(&starts, &velocities, &WEIGHTS, &scales), now), plan(&rows));
+        let crowd = CrowdAtRisk::new(&futures).unwrap();
         let sweep = crowd.sweep(&plan, within);
-        let quadratures = [0, 1, 2].map(|k| deviations_of_hypothesis(k, counts[k]));
+        let quadratures = [0, 1, 2].map(deviations_of_hypothesis);
         // Times between which everything moves straight, by step.
         let mut times: Vec<f64> = (0..=12).map(|t| 0.4 * f64::from(t)).chain(rows.iter().map(|row| row[0])).collect();
         times.sort_by(f64::total_cmp);
@@ -213,7 +211,7 @@ proptest! {
             inside.map(|leg| [leg[0], leg[1]])
         };
         for (i, k) in (0..4).flat_map(|i| (0..3).map(move |k| (i, k))) {
-            let (deviations, count) = (&quadratures[k], counts[k]);
+            let (deviations, count) = (&quadratures[k], 64);
             let edge = |z: usize, time: f64, r: f64| {
                 let [_, px, py, _] = row_at(&rows, time);
                 let scale = now * (1.0 - time / 0.4).max(0.0) + scales[i] * time / 4.8;
