@@ -41,10 +41,10 @@ def plans_of(at: Floats, velocities: Floats) -> Floats:
 
 
 def costs_of(plans: Floats, velocities: Floats, risks: Floats, goal: Floats) -> Floats:
-    """A collision costs most, then every second away from the goal; jerks cost a little."""
-    jerks = np.linalg.norm(np.diff(velocities, axis=1), axis=2).sum(axis=1)
+    """A collision costs most, then every second away from the goal; changes of velocity cost a little."""
+    changes = np.linalg.norm(np.diff(velocities, axis=1), axis=2).sum(axis=1)
     away = np.linalg.norm(plans[:, :, 1:3] - goal, axis=2).sum(axis=1)
-    return np.asarray(20.0 * risks + 0.1 * (away + jerks))
+    return np.asarray(20.0 * risks + 0.1 * (away + changes))
 
 
 def main(tracks: str, fps: float, pedestrian: str) -> None:

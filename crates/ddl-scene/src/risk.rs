@@ -15,7 +15,7 @@
 //! and the hypotheses of those who walk with the pedestrian on the plan get other weights.
 //!
 //! Shares are those of 64 deviations of equal probability (`quadrature.rs`), others for each hypothesis, so that
-//! results depend on nothing but their input. A risk is wrong by .002 (root mean square), seldom by more than .01.
+//! results depend on nothing but their input. Less than 1/64 of a hypothesis may count as 0.
 
 mod course;
 mod crowd;
@@ -127,18 +127,20 @@ impl Futures {
         ego: Option<usize>,
     ) -> Risk {
         let mut pedestrians = vec![0.0; self.pedestrians()];
-        let mut nobody = [1.0; 2 * HORIZON];
+        // During each step, then until its end: the probability that no pedestrian comes close, the product of those of
+        // each. A product of numbers up to 1 cannot rise, so `until` cannot fall by rounding.
+        let mut none_close = [1.0; 2 * HORIZON];
         for i in crowd.near(sweep).filter(|&i| Some(i) != ego) {
             let PlanResponse { factors, odds } = respond(i);
             let Some(hits) = crowd.hits(sweep, i, &reweighted(&crowd.shares[i], &factors)) else { continue };
             // The weights sum to 1 up to rounding.
             let of_one = reduced(&hits, odds).map(|probability| probability.min(1.0));
             pedestrians[i] = of_one[2 * HORIZON - 1];
-            for (nobody, of_one) in nobody.iter_mut().zip(of_one) {
-                *nobody *= 1.0 - of_one;
+            for (none_close, is_close) in none_close.iter_mut().zip(of_one) {
+                *none_close *= 1.0 - is_close;
             }
         }
-        let somebody = nobody.map(|nobody| 1.0 - nobody);
+        let somebody = none_close.map(|probability| 1.0 - probability);
         let [steps, until] = [0, HORIZON].map(|from| from_fn(|step| somebody[from + step]));
         Risk { total: somebody[2 * HORIZON - 1], pedestrians, steps, until }
     }

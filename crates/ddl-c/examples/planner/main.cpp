@@ -48,7 +48,7 @@ Velocities rollout(const Velocities& nominal, std::mt19937& random) {
     return velocities;
 }
 
-// A collision costs most, then every second away from the goal; jerks cost a little.
+// A collision costs most, then every second away from the goal; changes of velocity cost a little.
 double cost(double risk, const ddl::Plan& plan, const Velocities& velocities) {
     double sum = 20.0 * risk;
     for (const auto& row : plan) sum += 0.1 * std::hypot(goal.x - row.position.x, goal.y - row.position.y);

@@ -1,4 +1,5 @@
-use super::{crowd::CrowdAtRisk, quadrature::deviations_of_hypothesis};
+use super::crowd::CrowdAtRisk;
+use super::quadrature::{DEVIATIONS, deviations_of_hypothesis};
 use crate::fixture::{futures, plan, with_deviation};
 use crate::{Futures, Plan, Risk, SceneError};
 use ddl_core::{Forecast, HORIZON, OBSERVED, Pace, PedestrianId, Position, RegionTable, Spread, Window};
@@ -135,9 +136,9 @@ fn companions_go_on_as_the_plan_does() {
     }
 }
 
-/// Of twenty hypotheses of a companion one remains: its risk has all deviations, so it does not depend on the axes.
+/// Of twenty equal hypotheses of a companion one remains: the risk is its own, and the same however all are turned.
 #[test]
-fn a_hypothesis_that_gains_weight_is_as_accurate_as_others() {
+fn the_hypothesis_that_gains_all_weight_has_an_accurate_risk() {
     let of_angle = |angle: f64| {
         let (sin, cos) = angle.sin_cos();
         let turned = |[x, y]: Position| [cos * x - sin * y, sin * x + cos * y];
@@ -211,7 +212,7 @@ proptest! {
             inside.map(|leg| [leg[0], leg[1]])
         };
         for (i, k) in (0..4).flat_map(|i| (0..3).map(move |k| (i, k))) {
-            let (deviations, count) = (&quadratures[k], 64);
+            let (deviations, count) = (&quadratures[k], DEVIATIONS);
             let edge = |z: usize, time: f64, r: f64| {
                 let [_, px, py, _] = row_at(&rows, time);
                 let scale = now * (1.0 - time / 0.4).max(0.0) + scales[i] * time / 4.8;
