@@ -36,3 +36,10 @@ pub(crate) use gelu::gelu;
 pub(crate) use heads::HEAD_WIDTH;
 pub(crate) use linear::LinearKernel;
 pub use scenes::Scenes;
+
+/// Makes what a thread keeps between computations, so that its first job need not. A thread of a pool may get that job
+/// long after the others.
+pub fn prepare_thread() {
+    buffer::prepare_thread();
+    spatial_attention::prepare_thread();
+}

@@ -96,5 +96,6 @@ pub use forecast::{
     BatchRollout, CrowdOrder, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout,
     length_unit, motion_bounds, visibility,
 };
+pub use kernel::prepare_thread;
 pub use proposal::{PedestrianView, ProposalExample, ProposalNetwork, ProposeEndpoints, ProposedEndpoints};
 pub use training_report::{EpochReport, ProposalStep, StepReport};

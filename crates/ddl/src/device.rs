@@ -140,7 +140,7 @@ fn pool_of(threads: usize) -> Result<rayon::ThreadPoolBuilder, DdlError> {
     if threads > MOST_THREADS {
         return Err(DdlError::Threads(threads));
     }
-    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads))
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(threads).start_handler(|_| ddl_network::prepare_thread()))
 }
 
 /// "yes", or "no" with the reason.

@@ -63,6 +63,11 @@ impl Spares {
     }
 }
 
+/// Makes this thread's list of free buffers. The first use asks the C heap for memory, for what drops it at the end.
+pub(super) fn prepare_thread() {
+    SPARES.with(|_| ());
+}
+
 /// While it lives, its thread keeps all free buffers. In a parallel loop it lives as long as one job of rayon: one
 /// hypothesis of a crowd or several.
 ///

@@ -16,6 +16,7 @@ use backward::SceneBackward;
 use ddl_simd::Lanes;
 use dropout::WeightDecisions;
 use forward::SceneForward;
+pub(super) use queries::prepare_thread;
 use queries::{SceneTask, run_buffered};
 
 /// Cost of a pair of a query and a key, in multiplications.

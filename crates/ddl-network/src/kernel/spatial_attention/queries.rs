@@ -74,6 +74,11 @@ thread_local! {
     static BUFFERS: RefCell<SceneBuffers> = RefCell::default();
 }
 
+/// Makes this thread's buffers, as those of `kernel::buffer`.
+pub(in crate::kernel) fn prepare_thread() {
+    BUFFERS.with(|_| ());
+}
+
 /// A job, with the buffers of its thread.
 pub(super) struct Buffered<'b, J> {
     pub(super) job: J,
